@@ -14,11 +14,11 @@ WEB_SOURCES := $(shell find web -path web/node_modules -prune -o -path web/dist 
 # Tests start hundreds of processes, which need not read all sources anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run install web wheels simulator style-python style-page test test-all test-long mutants check peers lab \
+.PHONY: run install web wheels simulator style-python style-page test test-all mutants check peers lab \
 	bench acceptance fuzz validate pictures docs texts release-check lock
 
 run: install web
-	@$(BIN)/python -m server.local
+	@$(BIN)/python -m microcosmos_server.local
 
 install: $(INSTALLED) $(KERNEL)
 
@@ -33,8 +33,8 @@ $(INSTALLED): $(LOCK) requirements-node.lock pyproject.toml
 
 $(KERNEL): $(KERNEL_SOURCES) requirements-zig.lock $(INSTALLED)
 	@echo "Building the native kernel ..."
-	@$(BIN)/python engine/kernels/install.py
-	@touch $@
+	@# It touches the file only once the kernel is installed: else the next call tries again.
+	@$(BIN)/python engine/kernels/install.py $@
 
 web: web/dist/index.html
 
@@ -52,37 +52,38 @@ style-python: install
 
 style-page: install web
 	@$(BIN)/python web/scripts/openapi.py | diff - web/openapi.json
+	@$(BIN)/python web/scripts/figures.py | diff - web/src/api/figures.json
 	@$(NPM) run --silent generated && $(NPM) run --silent check && $(NPM) test --silent
 
 check: install web
 	@$(STYLE)
 	$(BIN)/pytest -m fast tests/engine
 
-# `make test` is everything essential; `make test-all` adds the tests marked `long` (see
-# tests/README.md). Tests about bits compile as the product does; the others compile without
-# optimising, see tests/engine/conftest.py. Tests of the server fork, and a process with JAX must
-# not, so they run last, together with those of real processes and a browser.
-test: install web
+# `make test` is everything essential; `make test-all` is everything (see tests/README.md), with the
+# libraries that examples and benchmarks need. Both have the same parts, each in one session, since
+# long tests share products, finished runs and compiled programs with the others. Tests about bits
+# compile as the product does; the others compile without optimising, see tests/engine/conftest.py.
+# Tests of the server fork, and a process with JAX must not. Those of whole products, with real
+# processes and a browser, run apart and all at the lowest priority: a worker's job lowers its own,
+# and would starve beside the tests and browsers that wait for it.
+test test-all: install web
 	@rm -f $(TIMES)
 	$(call part,style,$(STYLE))
-	$(call part,engine,$(ENGINE) -m "not optimised and not long" tests/engine tests/examples)
-	$(call part,bits,$(BITS) -m "optimised and not long")
-	$(call part,server,$(SERVER) -m "not long")
+	$(call part,engine,$(ENGINE) -m "not optimised$(AND)" tests/engine tests/examples)
+	$(call part,bits,$(BITS) -m "optimised$(AND)")
+	$(call part,server,$(SERVER) -m "not optimised$(AND)")
+	$(call part,products,$(PRODUCTS) -m "not optimised$(AND)")
 	$(TELL_TIMES)
 
-test-all: test test-long
-
-test-long: install web
-	@rm -f $(TIMES)
-	$(call part,long engine,$(ENGINE) -m "not optimised and long" tests/engine tests/examples)
-	$(call part,long bits,$(BITS) -m "optimised and long")
-	$(call part,long server,$(SERVER) -m long)
-	$(TELL_TIMES)
+test: AND = $() and not long
+test-all: peers lab
 
 # A worker keeps the tests of a file together: they share what the file has compiled.
 ENGINE = $(BIN)/pytest -q -p no:schemathesis -n auto --maxprocesses 4 --dist worksteal
 BITS = MICROCOSMOS_TEST_OPTIMISED=1 $(ENGINE) tests/engine
-SERVER = $(BIN)/pytest -q -n 5 --ignore=tests/engine --ignore=tests/examples
+PRODUCT_TESTS = tests/faults tests/e2e
+SERVER = $(BIN)/pytest -q -n 3 $(addprefix --ignore=,tests/engine tests/examples $(PRODUCT_TESTS)) tests
+PRODUCTS = nice -n 19 $(BIN)/pytest -q -n 3 $(PRODUCT_TESTS)
 TIMES := $(VENV)/times
 # A named part of the tests; its time is printed at the end. Parts that fail stop no other, and
 # are named there. Status 5 means that no test matched.
@@ -96,13 +97,16 @@ TELL_TIMES = @cat $(TIMES); ! grep -q FAILED $(TIMES)
 mutants: install web
 	$(BIN)/python tests/mutants/run.py $(NAMES)
 
-# Libraries with which the benchmarks compare.
-peers: install
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-peers.lock
+# Libraries with which the benchmarks compare, and JupyterLab, in which a test opens a notebook.
+peers: $(VENV)/installed-requirements-peers.lock
+lab: $(VENV)/installed-requirements-lab.lock
 
-# JupyterLab, in which a test opens a notebook.
-lab: install
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-lab.lock
+$(VENV)/installed-requirements-peers.lock $(VENV)/installed-requirements-lab.lock: \
+$(VENV)/installed-%: % $(INSTALLED)
+	@echo "Installing from $< ..."
+	@# The lock has all dependencies, one of which overrides what a library asks for.
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes -r $<
+	@touch $@
 
 bench: peers web
 	$(BIN)/python engine/benchmarks/physics.py
@@ -174,18 +178,6 @@ release-check: install web
 	&& venv/bin/python -c 'import microcosmos as mc; mc.evolve; print(mc.__version__, mc.__file__)' \
 	&& JAX_PLATFORMS=cpu venv/bin/microcosmos evolve demo --out demo.h5 \
 	&& JAX_PLATFORMS=cpu venv/bin/microcosmos replay demo.best.json --check
-
-# TensorNEAT is under the GPL-3 and no part of Microcosmos. Its NEAT needs only SymPy in addition;
-# its other dependencies (Brax, MuJoCo, Gymnax ...) are for its own tasks.
-.PHONY: tensorneat
-TENSORNEAT_COMMIT := ee204900e8e55ffe0ed756651ea871c70230dd34
-TENSORNEAT_SRC ?= git+https://github.com/EMI-Group/tensorneat@$(TENSORNEAT_COMMIT)
-
-tensorneat: install
-	@echo "Installing TensorNEAT (GPL-3) from $(TENSORNEAT_SRC) ..."
-	@$(BIN)/python -m pip install -q --disable-pip-version-check "sympy>=1.13,<2"
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps "$(TENSORNEAT_SRC)"
-	@$(BIN)/python -c 'import tensorneat.algorithm'
 
 # What a run's curves and files can go to; the tests need all of them.
 SINKS := --extra exports --extra tensorboard --extra mlflow --extra wandb

@@ -9,7 +9,7 @@ COPY docs/glossary.md /docs/
 RUN npm run build
 
 FROM python:3.12-slim-bookworm
-ENV PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=/app/engine:/app
+ENV PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=/app/engine:/app/server
 WORKDIR /app
 COPY requirements-server.lock ./
 RUN pip install --no-cache-dir --disable-pip-version-check --require-hashes -r requirements-server.lock
@@ -22,4 +22,4 @@ USER microcosmos
 ENV MICROCOSMOS_DATA=/data
 VOLUME /data
 EXPOSE 8000
-CMD ["python", "-m", "server.main"]
+CMD ["python", "-m", "microcosmos_server.main"]

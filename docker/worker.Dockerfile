@@ -11,7 +11,7 @@ RUN pip wheel --no-cache-dir --disable-pip-version-check --no-build-isolation --
 
 FROM python:3.12-slim-bookworm
 ARG LOCK=requirements.lock
-ENV PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=/app/engine:/app
+ENV PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=/app/engine:/app/server:/app/worker
 WORKDIR /app
 COPY ${LOCK} ./
 RUN pip install --no-cache-dir --disable-pip-version-check --require-hashes -r ${LOCK}
@@ -24,4 +24,4 @@ RUN useradd --uid 10001 --no-create-home microcosmos && install -d -o microcosmo
 USER microcosmos
 ENV MICROCOSMOS_DATA=/data JAX_COMPILATION_CACHE_DIR=/data/jax-cache
 VOLUME /data
-CMD ["python", "-m", "worker.supervisor"]
+CMD ["python", "-m", "microcosmos_worker.supervisor"]

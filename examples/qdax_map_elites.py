@@ -38,10 +38,11 @@ def main(
     microcosmos.prepare()
     network = {"control": {"period": 50}, "search": {"batch": batch}}
     spec = microcosmos.parse(SPEC | (network if emitter == "neat" else DIRECT) | changes)
-    plan = build.build_plan(spec)
+    run = build.build(spec)
+    plan = run.plan
     keys = jax.random.split(jax.random.PRNGKey(0), batch + 2)
-    first = jax.vmap(lambda key: plan.encoding.newcomer(key=key))(keys[2:])
-    centroids = jnp.asarray(plan.cells.centres)
+    first = jax.vmap(lambda key: run.facts.encoding.newcomer(key=key))(keys[2:])
+    centroids = jnp.asarray(plan.container.centres)
     search = MAPElites(
         scoring_function=jax.jit(microcosmos.scoring_function(spec)),
         emitter=emitter_of(emitter, spec, plan, batch, centroids),

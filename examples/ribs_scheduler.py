@@ -45,7 +45,8 @@ def main(
 
 def grid(spec: Any, rate: float) -> GridArchive:
     """Return an empty archive; its least threshold refuses infeasible creatures."""
-    plan = build.build_plan(spec)
+    run = build.build(spec)
+    plan = run.plan
     return GridArchive(
         solution_dim=plan.genotype.values.shape[0],
         dims=[axis.bins for axis in plan.axes],

@@ -1,7 +1,12 @@
 """Files that describe the project agree with each other."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -39,10 +44,44 @@ def test_lock_files_have_hashes_and_no_address(path):
     assert "://" not in text
 
 
+def pins(name: str) -> dict[tuple[str, str], str]:
+    """The version of each package and condition, as "python_version < '3.12'", in a lock."""
+    found = {}
+    for line in (ROOT / f"{name}.lock").read_text().splitlines():
+        if line[:1].isalnum():
+            pin, _, condition = line.rstrip("\\ ").partition(" ; ")
+            package, _, version = pin.partition("==")
+            found[package, condition] = version
+    return found
+
+
+@pytest.mark.parametrize("name", ["requirements-lab", "requirements-peers"])
+def test_lock_files_that_are_installed_together_name_the_same_versions(name):
+    installed, more = pins("requirements"), pins(name)
+    common = installed.keys() & more.keys()
+    assert common
+    assert {one: more[one] for one in common} == {one: installed[one] for one in common}
+
+
 def test_released_kernels_have_the_interface_that_their_project_names():
     kernel = tomllib.loads((ROOT / "engine/kernels/pyproject.toml").read_text())
     lock = (ROOT / "requirements-xla.lock").read_text()
     assert lock.split()[0] in kernel["build-system"]["requires"]
+
+
+@pytest.mark.parametrize("works", [True, False])
+def test_a_kernel_that_cannot_be_built_leaves_no_older_one(
+    works, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.syspath_prepend(ROOT / "engine" / "kernels")
+    install, calls = import_module("install"), []
+    monkeypatch.setattr(install, "system_compiler", lambda: "c++")
+    monkeypatch.setattr(install, "build", lambda _: works)
+    monkeypatch.setattr(install.subprocess, "run", calls.append)
+    install.main(str(tmp_path / "stamp"))
+    assert (tmp_path / "stamp").exists() == works
+    assert ["uninstall" in call for call in calls] == ([] if works else [True])
+    assert ("SKIPPED" in capsys.readouterr().out) != works
 
 
 @pytest.mark.parametrize(
@@ -62,3 +101,14 @@ def test_the_glossary_has_one_paragraph_for_each_term_in_order():
         terms.append(term.lower())
     assert terms == sorted(set(terms))
     assert {"archive", "descriptor", "elite", "feasible", "measure", "stroke"} <= set(terms)
+
+
+@pytest.mark.parametrize("module", ["microcosmos", "microcosmos_server.local"])
+def test_ctrl_c_ends_a_command_that_still_loads_without_a_traceback(module, tmp_path):
+    press = "import os, signal, time; os.kill(os.getpid(), signal.SIGINT); time.sleep(60)"
+    (tmp_path / "pydantic.py").write_text(press)
+    environment = os.environ | {"PYTHONPATH": str(tmp_path), "MICROCOSMOS_DATA": str(tmp_path)}
+    # Whoever starts the tests in the background ignores the signal.
+    command = ["env", "--default-signal=INT", sys.executable, "-m", module, "--help"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")

@@ -10,7 +10,7 @@ from drive import QUICK
 
 README = Path(__file__).parents[1] / "README.md"
 SMALL = """"experiment": "quality-diversity",
-    "world": {"width": 32, "height": 32}, "body": {"nodes": 12}, "task": {"steps": 60},
+    "world": {"width": 32, "height": 32}, "body": {"nodes": 12}, "task": {"steps": 400},
     "search": {"generations": 2, "batch": 16}"""
 
 

@@ -1,4 +1,4 @@
-/** Lint rules: the import order between folders, and the size of files and functions. */
+/** Lint rules: the import order between folders, and the size of functions. */
 
 import { readdirSync } from "node:fs";
 import tseslint from "typescript-eslint";
@@ -55,7 +55,6 @@ export default tseslint.config(
   {
     files: ["src/**/*.{ts,tsx}"],
     languageOptions: { parser: tseslint.parser },
-    rules: { "max-lines": ["error", 300] },
   },
   ...orders,
   {

@@ -1,6 +1,10 @@
-/** Builds dist/saved.html: the script and the styles of a saved page in one file, without its data. */
+/**
+ * Builds the page of a creature or a motion that needs no server: script and styles in one file, without
+ * its data. The page fills in dist/saved.html, the Python library its copy, widget.html.
+ */
 
 import { createHash } from "node:crypto";
+import { writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vite";
 
@@ -52,6 +56,7 @@ const inOneFile = {
     }
     const source = template(script.replaceAll("</script", "<\\/script"), style);
     this.emitFile({ type: "asset", fileName: "saved.html", source });
+    writeFileSync(path("../engine/microcosmos/widgets/widget.html"), source); // Outside of outDir.
   },
 };
 

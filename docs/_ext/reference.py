@@ -1,10 +1,12 @@
 """The API reference: one page for each package, from signatures and docstrings.
 
 Griffe reads the sources without importing them, so that building needs no JAX. A page has the
-names that its package exports; docstrings are Markdown.
+names that its package exports; docstrings are Markdown. The page of `microcosmos.measures` has
+the table of all measures too, which needs the standard library alone.
 """
 
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +28,16 @@ def write(app: Sphinx) -> None:
     packages = [one for one in inner(root) if one.path.split(".")[1] not in COMMANDS]
     packages.sort(key=name)
     pages = {name(one): page(one) for one in packages}
+    pages["measures"] += "\n" + measures(app.srcdir.parent / "engine")
     write_pages(app.srcdir / "reference", pages | {"index": index(root, packages)})
+
+
+def measures(engine: Path) -> str:
+    """The tables of measures and of their units."""
+    sys.path.insert(0, str(engine))
+    from microcosmos.measures.derived import table
+
+    return table()
 
 
 def inner(package: griffe.Module) -> list[griffe.Module]:

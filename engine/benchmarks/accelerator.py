@@ -71,7 +71,7 @@ def print_rollouts(bandwidth: float) -> None:
 
 
 def rollouts(rollout: Callable, count: int) -> tuple[Callable, Any]:
-    """A program of rollouts in `count` worlds, and its rest shapes, all with one start."""
+    """Return a program of rollouts in `count` worlds with one start, and its rest shapes."""
     body = bodies.chain(physics.NODES, 1.0, stretch=1.0, shear=1.0, bend=1.0)
     box, starts, rests = physics.scene()
     box = replace(box, layout=build_layout(body, jnp.float32))
@@ -102,7 +102,7 @@ def print_evaluations() -> None:
 
 
 def evaluations(task: search.Task, block: int) -> tuple[Callable, Any]:
-    """A program that evaluates newcomers, and these."""
+    """Return a program that evaluates newcomers, and the newcomers."""
     encoding = task.encoding
     assert encoding is not None
     keys = jax.random.split(jax.random.key(0), block)
@@ -113,8 +113,11 @@ def evaluations(task: search.Task, block: int) -> tuple[Callable, Any]:
 def compiled(programs: list[tuple[Any, Any]]) -> list[tuple[Callable, Any]]:
     lowered = [program.lower(given) for program, given in programs]
     with ThreadPoolExecutor() as pool:
-        found = list(pool.map(lambda one: one.compile(), lowered))
-    return [(program, given) for program, (_, given) in zip(found, programs, strict=True)]
+        programs_compiled = list(pool.map(lambda one: one.compile(), lowered))
+    return [
+        (program, given)
+        for program, (_, given) in zip(programs_compiled, programs, strict=True)
+    ]
 
 
 def median(program: Callable, given: Any) -> float:

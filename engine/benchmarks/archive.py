@@ -5,7 +5,6 @@ program compiled before. `make peers` installs the other libraries; without them
 """
 
 import importlib
-import os
 import statistics
 from collections.abc import Callable
 from typing import Any
@@ -35,11 +34,10 @@ Library = tuple[Callable[[np.ndarray, np.ndarray, np.ndarray], Any], Callable[[A
 
 def main() -> None:
     device.prepare()
-    small = os.environ.get("SMALL")
-    for side in SIDES[:1] if small else SIDES:
+    for side in SIDES:
         for stage in STAGES:
             insertion(side, stage)
-    tessellation(1_024 if small else CENTROIDS)
+    tessellation(CENTROIDS)
     scores()
 
 

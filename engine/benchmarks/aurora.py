@@ -117,8 +117,8 @@ def _figures(genes: np.ndarray) -> np.ndarray:
     fitness, measures = jax.vmap(arm)(jnp.asarray(genes))
     best = np.full(GRID.count, -np.inf)
     np.maximum.at(best, np.asarray(GRID.of(measures)), np.asarray(fitness) - LEAST)
-    there = np.isfinite(best)
-    return np.array([100 * there.mean(), best[there].sum(), len(genes)])
+    occupied = np.isfinite(best)
+    return np.array([100 * occupied.mean(), best[occupied].sum(), len(genes)])
 
 
 METHODS = {
@@ -135,20 +135,22 @@ def main() -> None:
     chosen = parser.parse_args()
     device.prepare()
     methods = [one for one in METHODS if "QDax" not in one or timing.installed("qdax")]
-    found: dict[str, list[np.ndarray]] = {name: [] for name in methods}
+    figures: dict[str, list[np.ndarray]] = {name: [] for name in methods}
     for seed in range(chosen.seeds):
         for name in methods:
             begun = time.monotonic()
             row = METHODS[name](seed, chosen.generations)
-            found[name].append(np.append(row, time.monotonic() - begun))
-            print(seed, name, *(f"{figure:.2f}" for figure in found[name][-1]), flush=True)
+            figures[name].append(np.append(row, time.monotonic() - begun))
+            print(seed, name, *(f"{figure:.2f}" for figure in figures[name][-1]), flush=True)
     rows = [
         (name, *(timing.median_range(column) for column in np.transpose(values).tolist()))
-        for name, values in found.items()
+        for name, values in figures.items()
     ]
     evaluations = f"{chosen.generations * BATCH:,} evaluations, {chosen.seeds} seeds"
     timing.print_table(f"{evaluations}: median (range)", ("", *COLUMNS), rows)
-    mine, theirs = (np.array(values) for values in list(found.values())[:2])
+    if len(methods) < len(METHODS):
+        return
+    mine, theirs = (np.array(values) for values in list(figures.values())[:2])
     for i, name in enumerate(COLUMNS[:2]):
         share, p = ranks(mine[:, i], theirs[:, i])
         print(f"{name}: {methods[0]} above {methods[1]} in {100 * share:.0f} %, p = {p:.2g}")

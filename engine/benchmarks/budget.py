@@ -1,4 +1,4 @@
-"""What a step of the native kernel costs, beside what this machine can do at best.
+"""The cost of a step of the native kernel, beside the least that this machine needs.
 
 Prints tables and asserts nothing; `--picture FILE` also draws the step over sizes of worlds and
 numbers of nodes. `machine.cpp`, built here with the C++ compiler of the system, measures the
@@ -74,16 +74,16 @@ class Machine:
             one.restype = ctypes.c_double
 
     def pass_over_populations(self, side: int) -> float:
-        """Read and write nine populations of a box once."""
+        """Return the time to read and write the nine populations of a box once."""
         return self._library.in_place(9 * side * side, max(1, CELLS // side**2))
 
     def two_copies(self, side: int) -> float:
-        """A step of the fluid by two copies of its populations."""
+        """Return the time of a step of the fluid by two copies of its populations."""
         return self._library.lattice(side, side, max(1, CELLS // side**2 // 8))
 
 
 def alone(side: int) -> Scene:
-    """One filament in a box."""
+    """Return the scene of one filament in a box."""
     steps = max(50, CELLS // side**2 // 16)
     return scene(bodies.chain(32, 1.0, **STIFF), (side, side), min(steps, 1_000), matched=True)
 
@@ -101,7 +101,7 @@ def fluid_seconds(one: Scene) -> Callable[[], float]:
 
 def over_sizes(machine: Machine) -> dict[str, list[float]]:
     """Print and return µs a step over the sizes of a box with one filament."""
-    found: dict[str, list[float]] = {}
+    times: dict[str, list[float]] = {}
     for side in SIDES:
         one = alone(side)
         measured: dict[str, Callable[[], float]] = {
@@ -112,19 +112,19 @@ def over_sizes(machine: Machine) -> dict[str, list[float]]:
             "step of JAX": stepping(one, in_jax),
         }
         for name, values in taking_turns(measured).items():
-            found.setdefault(name, []).append(1e6 * statistics.median(values))
+            times.setdefault(name, []).append(1e6 * statistics.median(values))
     rows = [
-        (f"{side}²", *(f"{found[name][n]:.1f}" for name in found), *speeds(found, n, side))
+        (f"{side}²", *(f"{times[name][n]:.1f}" for name in times), *speeds(times, n, side))
         for n, side in enumerate(SIDES)
     ]
-    head = ("cells", *found, "pass, GB/s", "two copies, MLUPS", "kernel's fluid, MLUPS")
+    head = ("cells", *times, "pass, GB/s", "two copies, MLUPS", "kernel's fluid, MLUPS")
     timing.print_table("µs, one filament of 32 nodes", head, rows)
-    return found
+    return times
 
 
-def speeds(found: dict[str, list[float]], n: int, side: int) -> list[str]:
-    bandwidth = 2 * 4 * 9 * side**2 / found["one pass"][n] / 1e3
-    updates = [side**2 / found[name][n] for name in ("two copies", "fluid of the kernel")]
+def speeds(times: dict[str, list[float]], n: int, side: int) -> list[str]:
+    bandwidth = 2 * 4 * 9 * side**2 / times["one pass"][n] / 1e3
+    updates = [side**2 / times[name][n] for name in ("two copies", "fluid of the kernel")]
     return [f"{one:.0f}" for one in (bandwidth, *updates)]
 
 
@@ -185,7 +185,7 @@ def moved_bytes(one: Scene) -> dict[str, int]:
 
 
 def touched_cells(one: Scene) -> int:
-    """Cells in windows at the start."""
+    """Return the number of cells in windows at the start."""
     first = np.floor(np.asarray(one.start.positions) - 0.5).astype(int)
     offsets = np.stack(np.meshgrid(range(4), range(4)), -1).reshape(-1, 2)
     every = (first[:, None] + offsets) % np.array(one.box.size)
@@ -194,7 +194,7 @@ def touched_cells(one: Scene) -> int:
 
 def over_nodes() -> dict[str, list[float]]:
     """Print and return µs a step over numbers of nodes."""
-    found: dict[str, list[float]] = {}
+    times: dict[str, list[float]] = {}
     for nodes in CROWDS:
         one = scene(rows_of_filaments(nodes // 20), (CROWDED, CROWDED), 50)
         measured = {
@@ -202,19 +202,19 @@ def over_nodes() -> dict[str, list[float]]:
             "step of JAX": stepping(one, in_jax),
         }
         for name, values in taking_turns(measured).items():
-            found.setdefault(name, []).append(1e6 * statistics.median(values))
-    ratios = np.divide(found["step of JAX"], found["step of the kernel"])
+            times.setdefault(name, []).append(1e6 * statistics.median(values))
+    ratios = np.divide(times["step of JAX"], times["step of the kernel"])
     rows = [
-        (f"{nodes:,}", *(f"{found[name][n]:.0f}" for name in found), f"{ratios[n]:.1f}")
+        (f"{nodes:,}", *(f"{times[name][n]:.0f}" for name in times), f"{ratios[n]:.1f}")
         for n, nodes in enumerate(CROWDS)
     ]
     title = f"µs, filaments of 20 nodes in {CROWDED} × {CROWDED} cells, swept"
-    timing.print_table(title, ("nodes", *found, "ratio"), rows)
-    return found
+    timing.print_table(title, ("nodes", *times, "ratio"), rows)
+    return times
 
 
 def rows_of_filaments(count: int) -> bodies.Body:
-    """Filaments of 20 nodes in up to ten columns, at equal distances."""
+    """Return filaments of 20 nodes in up to ten columns, at equal distances."""
     one, columns = bodies.chain(20, 1.0, **STIFF), min(count, 10)
     rows = -(-count // columns)
     places = [

@@ -47,29 +47,29 @@ def main() -> None:
 
 def compare(methods: list[str], chosen: argparse.Namespace) -> None:
     """Print scores of all methods, and rank tests of ours against the others."""
-    found: dict[tuple[str, str], np.ndarray] = {}
+    figures: dict[tuple[str, str], np.ndarray] = {}
     for task in chosen.tasks:
         for seed in range(chosen.seeds):
             for method in methods:
                 row = measured(task, method, seed, chosen.generations, chosen.results)
-                past = found.get((task, method), np.zeros((0, len(row))))
-                found[task, method] = np.concatenate([past, [row]])
-    rows = [(*names, *map(quartiles, values.T)) for names, values in found.items()]
+                past = figures.get((task, method), np.zeros((0, len(row))))
+                figures[task, method] = np.concatenate([past, [row]])
+    rows = [(*names, *map(quartiles, values.T)) for names, values in figures.items()]
     evaluations = f"{chosen.generations * BATCH:,} evaluations, {chosen.seeds} seeds"
     title = f"{evaluations}: median (quartiles)"
     timing.print_table(title, ("", "", *COLUMNS, "seconds"), rows)
-    print_tests(found, chosen.tasks)
+    print_tests(figures, chosen.tasks)
 
 
-def print_tests(found: dict[tuple[str, str], np.ndarray], tasks: list[str]) -> None:
+def print_tests(figures: dict[tuple[str, str], np.ndarray], tasks: list[str]) -> None:
     """Print tests of QD score and coverage, each of our methods against its rival."""
     rows, p_values = [], []
     for task in tasks:
         for ours, theirs in classic_methods.PAIRS.items():
-            if not {(task, ours), (task, theirs)} <= found.keys():
+            if not {(task, ours), (task, theirs)} <= figures.keys():
                 continue
             for i, name in enumerate(COLUMNS[:2]):
-                share, p = ranks(found[task, ours][:, i], found[task, theirs][:, i])
+                share, p = ranks(figures[task, ours][:, i], figures[task, theirs][:, i])
                 rows.append((task, ours, name, theirs, f"{100 * share:.0f} %", f"{p:.2g}"))
                 p_values.append(p)
     corrected = [f"{p:.2g}" for p in holm(p_values)]

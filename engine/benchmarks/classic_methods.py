@@ -17,7 +17,7 @@ PAIRS = {"iso+line": "QDax iso+line", "CMA-MAE": "pyribs CMA-MAE"}
 
 
 def newcomer(*, key: jax.Array) -> genomes.Vector:
-    """Normal genes of deviation 1, on the scale of a task."""
+    """Return normal genes of deviation 1, on the scale of a task."""
     return genomes.Vector(jax.random.normal(key, (GENES,)) / REACH)
 
 

@@ -31,7 +31,7 @@ class Task:
 
 
 def _projected(x: jax.Array) -> jax.Array:
-    """Sums of the first and of the second half; values beyond ±5.12 fold back."""
+    """Return sums of the first and of the second half; values beyond ±5.12 fold back."""
     beyond = jnp.abs(x) > LIMIT
     clipped = jnp.where(beyond, LIMIT / jnp.where(beyond, x, 1.0), x)
     return jnp.stack([jnp.sum(half) for half in jnp.split(clipped, 2)])
@@ -56,7 +56,7 @@ def _rastrigin(x: jax.Array) -> jax.Array:
 
 
 def _arm(x: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Even angles are best; the measures are the place of the end of links of length 1."""
+    """Return fitness, best for even angles, and the place of the end of links of length 1."""
     angle = jnp.cumsum(x)
     end = jnp.stack([jnp.sum(jnp.cos(angle)), jnp.sum(jnp.sin(angle))])
     return 100 * (1 - jnp.var(x)), end

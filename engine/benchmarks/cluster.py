@@ -1,4 +1,4 @@
-"""How busy helpers are: blocks that sleep, and real blocks with one helper and two.
+"""The efficiency of helpers: blocks that sleep, and real blocks with one helper and two.
 
 Prints two tables and asserts nothing. Efficiency is the time that blocks take, over the time of
 all helpers from the first block to the last. Helpers are processes of this machine.
@@ -19,8 +19,7 @@ from microcosmos import plugins
 from microcosmos.build import build
 from microcosmos.cluster.devices import ClusterDevices
 from microcosmos.experiments.evolution import Evolution
-from microcosmos.experiments.offspring import next_offspring
-from microcosmos.search import LocalDevices, never
+from microcosmos.search import loop
 from microcosmos.spec import Spec, parse
 from microcosmos.spec.quality_diversity import PRESETS
 
@@ -58,7 +57,7 @@ def helpers(count: int, modules: list[Path], **settings: str) -> Iterator[str]:
     """Start a scheduler and helpers; yield the address."""
     url = f"tcp://127.0.0.1:{PORT}"
     options = [word for file in modules for word in ("--module", str(file))]
-    commands = [("-m", "microcosmos.cli", "cluster", "scheduler", url)]
+    commands = [("-m", "microcosmos", "cluster", "scheduler", url)]
     for number in range(count):
         commands += [("-m", "microcosmos.cluster.helper", url, f"helper {number}", *options)]
     started = []
@@ -83,7 +82,7 @@ def helpers(count: int, modules: list[Path], **settings: str) -> Iterator[str]:
 def computing(experiment: Evolution, url: str, count: int) -> ClusterDevices:
     """Return the devices of a cluster once all its helpers compute for the run."""
     devices = ClusterDevices(experiment, url, None, own=False)
-    while devices.summary()["cluster: devices"] < count:
+    while devices.summary()["cluster.devices"] < count:
         time.sleep(0.2)
     return devices
 
@@ -91,13 +90,11 @@ def computing(experiment: Evolution, url: str, count: int) -> ClusterDevices:
 def measured(experiment: Evolution, devices: ClusterDevices, count: int) -> tuple[float, float]:
     """Return the wall time of a generation's blocks, and the efficiency."""
     state = experiment.init()
-    plan, programs = experiment.plan, experiment.programs
-    offspring = next_offspring(plan, programs, LocalDevices(), state, never)
-    genotypes = offspring.children.genotypes
-    program = programs.evaluate_block
-    devices.evaluate(program, genotypes, block=plan.block)  # It compiles.
+    program = experiment.plan.programs[loop.OFFSPRING]
+    genotypes = experiment.propose(state).children.genotypes
+    devices.evaluate(program.run, genotypes, block=program.block)  # It compiles.
     before, began = devices.seconds(), time.perf_counter()
-    devices.evaluate(program, genotypes, block=plan.block)
+    devices.evaluate(program.run, genotypes, block=program.block)
     wall = time.perf_counter() - began
     return wall, (devices.seconds() - before) / (count * wall)
 

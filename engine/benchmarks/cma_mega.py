@@ -22,7 +22,7 @@ AXES = tuple(search.Axis(i, 0.0, 1.0, BINS, False) for i in range(2))
 
 
 def _projected(x: jax.Array) -> jax.Array:
-    """Means of the first and of the second half, 0 to 1; values beyond ±5.12 fold back.
+    """Return means of the first and of the second half, 0 to 1; values beyond ±5.12 fold back.
 
     Linear projection: Fontaine et al., GECCO 2020, section 4.
     """
@@ -49,13 +49,13 @@ FUNCTIONS = {"sphere": _scaled(_sphere), "Rastrigin": _scaled(_rastrigin)}
 
 
 def with_slopes(function: loops.Function, x: jax.Array) -> tuple[jax.Array, ...]:
-    """Value, descriptors, and rows of derivatives."""
+    """Return value, descriptors, and rows of derivatives."""
     value_slope, descriptor_slopes = jax.jacrev(function)(x)
     return *function(x), jnp.concatenate([value_slope[None], descriptor_slopes])
 
 
 def score(fitness: np.ndarray) -> tuple[float, float]:
-    """QD score and coverage in percent of the maximum."""
+    """Return QD score and coverage in percent of the maximum."""
     count = BINS**2
     return 100 * float(np.sum(fitness)) / count, 100 * len(fitness) / count
 
@@ -74,7 +74,7 @@ def ours(function: loops.Function, seed: int) -> np.ndarray:
 
 
 def newcomer(*, key: jax.Array) -> genomes.Vector:
-    """Random genes near the middle."""
+    """Return random genes near the middle."""
     return genomes.Vector(0.01 * jax.random.normal(key, (GENES,)))
 
 
@@ -131,7 +131,7 @@ def pyribs(function: loops.Function, seed: int) -> np.ndarray:
 
 
 def measured(run: Callable, function: loops.Function, seed: int) -> tuple[float, ...]:
-    """QD score, coverage and seconds of one run."""
+    """Return QD score, coverage and seconds of one run."""
     start = time.monotonic()
     return *score(run(function, seed)), time.monotonic() - start
 
@@ -141,9 +141,12 @@ def main() -> None:
         f"CMA-MEGA, {GENERATIONS:,} generations of {BATCH} in {GENES} dimensions, "
         f"{BINS} × {BINS} cells: median of {len(SEEDS)} seeds (range)"
     )
+    libraries: dict[str, Callable] = {"microcosmos": ours}
+    libraries |= {"QDax": qdax} if timing.installed("qdax") else {}
+    libraries |= {"pyribs": pyribs} if timing.installed("ribs") else {}
     rows = []
     for name, function in FUNCTIONS.items():
-        for library, run in {"microcosmos": ours, "QDax": qdax, "pyribs": pyribs}.items():
+        for library, run in libraries.items():
             columns = zip(*(measured(run, function, seed) for seed in SEEDS), strict=True)
             rows.append((name, library, *map(timing.median_range, columns)))
     timing.print_table(title, ("", "", "QD score, %", "coverage, %", "seconds"), rows)

@@ -28,7 +28,7 @@ Scores = tuple[np.ndarray, np.ndarray]
 
 
 def rastrigin(x: jax.Array) -> jax.Array:
-    """Both objectives from 0 to 1: nearness to either optimum."""
+    """Return both objectives, nearness to either optimum, from 0 to 1."""
     z = x[None] - jnp.asarray(OPTIMA)[:, None]
     parts = 10 + z * z - 10 * jnp.cos(2 * jnp.pi * z)
     return 1 - jnp.mean(parts, 1) / WORST
@@ -41,7 +41,7 @@ def cells() -> search.Voronoi:
 
 
 def newcomer(*, key: jax.Array) -> genomes.Vector:
-    """Uniform genes."""
+    """Return uniform genes."""
     return genomes.Vector(jax.random.uniform(key, (GENES,), minval=-1.0, maxval=1.0))
 
 
@@ -58,9 +58,9 @@ def ours(seed: int, generations: int, length: int) -> Scores:
     emitter = search.emitters.IsoLine(BATCH, newcomer, 2 * ISO / (HIGH - LOW), LINE)
     loop = search.Search(search.Vectors(GENES), fronts, [emitter], seed=seed)
     loop.run(measured, generations)
-    found = loop.elites
-    both = np.stack([found.fitness, found.measures[:, 2]], 1)
-    return np.asarray(fronts.cells.of(jnp.asarray(found.measures))), both
+    elites = loop.elites
+    both = np.stack([elites.fitness, elites.measures[:, 2]], 1)
+    return np.asarray(fronts.cells.of(jnp.asarray(elites.measures))), both
 
 
 def qdax(seed: int, generations: int, length: int, *, alike: bool = False) -> Scores:
@@ -146,7 +146,7 @@ def main() -> None:
 
 
 def _test(found: dict[str, np.ndarray], name: str) -> str:
-    """Return in how many pairs our MOQD score is greater, and p of a two-sided rank test."""
+    """Return the share of pairs in which our MOQD score is greater, and p of a rank test."""
     if name == "ours":
         return ""
     share, p = ranks(found["ours"][:, 0], found[name][:, 0])

@@ -74,10 +74,10 @@ def qdax(name: str, seed: int, generations: int = GENERATIONS, batch: int = BATC
 
 
 def newcomer(*, key: jax.Array) -> genomes.Vector:
-    """Uniform genes."""
+    """Return uniform genes."""
     return genomes.Vector(jax.random.uniform(key, (GENES,), minval=-1.0, maxval=1.0))
 
 
 def score(fitness: np.ndarray, name: str) -> float:
-    """Σ over elites of fitness above the least."""
+    """Return the sum over elites of fitness above the least."""
     return float(np.sum(fitness.astype(float) - LEAST[name]))

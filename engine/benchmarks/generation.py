@@ -19,7 +19,7 @@ from microcosmos import search
 from microcosmos.build import build
 from microcosmos.device import prepare
 from microcosmos.experiments.evolution import Evolution
-from microcosmos.experiments.state import State
+from microcosmos.search.loop import State
 from microcosmos.spec import parse
 
 WARM, TIMED = 3, 8
@@ -44,10 +44,10 @@ FULL = ("MAP-Elites, NEAT", "MAP-Elites, NEAT, screened")
 
 def filled(run: Evolution, state: State) -> State:
     """Return the state with an elite in every cell: varied newcomers, which are no swimmers."""
-    plan, random = run.plan, np.random.default_rng(0)
+    plan, encoding, random = run.plan, run.facts.encoding, np.random.default_rng(0)
     count = plan.cell_count
     keys = jax.random.split(jax.random.key(1), count)
-    newcomer = jax.jit(jax.vmap(lambda key: plan.encoding.newcomer(key=key)))
+    newcomer = jax.jit(jax.vmap(lambda key: encoding.newcomer(key=key)))
     parts = [jax.device_get(newcomer(keys[i : i + 4096])) for i in range(0, count, 4096)]
     measures = random.random((count, len(plan.measures))).astype(np.float32)
     for axis, place in zip(plan.axes, search.cells_of(plan.container).centres.T, strict=True):
@@ -61,11 +61,12 @@ def filled(run: Evolution, state: State) -> State:
         genotypes=jax.tree.map(lambda *rows: jnp.asarray(np.concatenate(rows)), *parts),
     )
     creatures = random.integers(1, 256, (count, 32)).astype(np.uint8)
-    return replace(state, elites=elites, creatures=creatures)
+    lineage = replace(state.parts["lineage"], creatures=creatures)
+    return replace(state, elites=elites, parts={**state.parts, "lineage": lineage})
 
 
 def generations(document: dict[str, Any], full: bool) -> list[tuple[float, float]]:
-    """Seconds of each timed generation, and of its rollouts."""
+    """Return the seconds of each timed generation, and of its rollouts."""
     run = build(parse(document | ({"archive": LARGE} if full else {})))
     assert isinstance(run, Evolution)
     rollouts = [0.0]
@@ -74,7 +75,7 @@ def generations(document: dict[str, Any], full: bool) -> list[tuple[float, float
         def evaluate(self, program: Any, *given: Any, **options: Any) -> Any:
             start = time.monotonic()
             found = super().evaluate(program, *given, **options)
-            if program is run.programs.evaluate_block:
+            if program is run.plan.programs["offspring"].run:
                 rollouts[0] += time.monotonic() - start
             return found
 

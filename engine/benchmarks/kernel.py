@@ -18,11 +18,18 @@ import timing
 
 from microcosmos import bodies, device, filaments, groups, search, world
 from microcosmos.build import build_rods, build_task
+from microcosmos.build.experiments import build_crowd, room_of
 from microcosmos.build.scene import build_layout
-from microcosmos.build.tables import build_crowd
 from microcosmos.spec import EXPERIMENTS, QualityDiversity, Scaling
 
 REPEATS, CREATURES = 9, 8
+STEPS = 1_000
+"""Steps of a small world; larger ones take fewer."""
+CROWDS = (16_000, 128_000, 500_000)
+"""Nodes in the box of `scaling/paper`."""
+PRESETS = tuple(
+    one.name for one in EXPERIMENTS["quality-diversity"].presets if one.name != "paper"
+)
 STIFF = {"stretch": 1.0, "shear": 1.0, "bend": 1.0}
 
 
@@ -40,14 +47,18 @@ def main() -> None:
     print(f"{device.device_kind()}; one core; medians of {REPEATS} interleaved repeats\n")
     body = bodies.chain(32, 1.0, **STIFF)
     scenes = {
-        "64 × 64, a filament of 32 nodes, matched": scene(body, (64, 64), 1_000, matched=True),
-        "64 × 64, the same swept 10 times": scene(body, (64, 64), 1_000),
+        "64 × 64, a filament of 32 nodes, matched": scene(body, (64, 64), STEPS, matched=True),
+        "64 × 64, the same swept 10 times": scene(body, (64, 64), STEPS),
         "64 × 64, a star of 33 nodes, matched": scene(
-            bodies.star(4, 8, 1.0, **STIFF), (64, 64), 1_000, matched=True
+            bodies.star(4, 8, 1.0, **STIFF), (64, 64), STEPS, matched=True
         ),
-        "64 × 64, the same swept": scene(bodies.star(4, 8, 1.0, **STIFF), (64, 64), 1_000),
-        "128 × 128, 9 filaments of 20 nodes, swept": scene(shoal(3, 20), (128, 128), 300),
-        "256 × 256, 49 filaments of 20 nodes, swept": scene(shoal(7, 20), (256, 256), 100),
+        "64 × 64, the same swept": scene(bodies.star(4, 8, 1.0, **STIFF), (64, 64), STEPS),
+        "128 × 128, 9 filaments of 20 nodes, swept": scene(
+            shoal(3, 20), (128, 128), STEPS * 3 // 10
+        ),
+        "256 × 256, 49 filaments of 20 nodes, swept": scene(
+            shoal(7, 20), (256, 256), STEPS // 10
+        ),
     }
     rollouts(scenes)
     parts(scenes)
@@ -58,7 +69,7 @@ def main() -> None:
 def scene(
     body: bodies.Body, size: tuple[int, int], steps: int, *, matched: bool = False
 ) -> Scene:
-    """A world with bodies that bend in a travelling wave."""
+    """Return a world with bodies that bend in a travelling wave."""
     limits = world.Limits(jnp.float32(0.1), jnp.float32(0.1))
     box = world.World(
         jnp.float32(0.05),
@@ -79,7 +90,7 @@ def scene(
 
 
 def shoal(side: int, nodes: int) -> bodies.Body:
-    """Filaments in rows and columns, each turned by chance."""
+    """Return filaments in rows and columns, each turned at random."""
     one, rng = bodies.chain(nodes, 1.0, **STIFF), np.random.default_rng(0)
     places = [(36.0 * (i + 0.5), 36.0 * (j + 0.5)) for i in range(side) for j in range(side)]
     return bodies.combined([bodies.placed(one, p, rng.uniform(0, 6.28)) for p in places])
@@ -131,7 +142,7 @@ def parts(scenes: dict[str, Scene]) -> None:
 def crowds() -> None:
     """Print the time of a step of the scene of `scaling/paper` by one thread and by more."""
     cores, steps, rows = device.cores(), 10, []
-    for nodes in (16_000, 128_000, 500_000):
+    for nodes in CROWDS:
         crowd, start = build_crowd(Scaling(), nodes)
 
         def advance(threads: int, crowd: Any = crowd, start: Any = start) -> Callable[[], Any]:
@@ -155,9 +166,9 @@ def evaluations() -> None:
     """Print the time to evaluate a creature of a preset, from its genes to its measures."""
     rows = []
     for preset in EXPERIMENTS["quality-diversity"].presets:
-        if preset.name == "paper" or not isinstance(preset.spec, QualityDiversity):
+        if preset.name not in PRESETS or not isinstance(preset.spec, QualityDiversity):
             continue
-        task = build_task(preset.spec.scene)
+        task = build_task(preset.spec.scene, room=room_of(preset.spec))
         encoding: Any = task.encoding
         keys = jax.random.split(jax.random.key(0), CREATURES)
         genotypes = jax.vmap(lambda key, one=encoding: one.newcomer(key=key))(keys)

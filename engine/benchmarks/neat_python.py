@@ -109,7 +109,7 @@ class NeatPython:
         return seconds
 
     def sizes(self) -> tuple[float, float, int]:
-        """Mean hidden nodes and connections, and the number of species."""
+        """Return mean hidden nodes and connections, and the number of species."""
         networks = list(self.population.population.values())
         nodes = statistics.mean(len(one.nodes) for one in networks) - OUTPUTS
         connections = statistics.mean(len(one.connections) for one in networks)

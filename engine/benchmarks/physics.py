@@ -50,7 +50,7 @@ def main() -> None:
 
 
 def scene() -> tuple[world.World, world.State, filaments.Rest]:
-    """One world's parameters, and the start and the rest shapes of every world."""
+    """Return one world's parameters, and the start and the rest shapes of every world."""
     body = bodies.chain(NODES, 1.0, stretch=1.0, shear=1.0, bend=1.0)
     limits = world.Limits(jnp.float32(0.1), jnp.float32(0.1))
     rods, viscosity = build_rods(body, jnp.float32), jnp.float32(VISCOSITY)
@@ -77,7 +77,7 @@ def split(starts: world.State, rests: filaments.Rest) -> list[Any]:
 
 
 def rollout_program(box: world.World, step: Step, parts: list[Any]) -> Callable[[], Any]:
-    """A function that carries all worlds through all steps, on all devices at once."""
+    """Return a function that carries all worlds through all steps, on all devices at once."""
 
     def rollout(args):
         state, rest = args
@@ -121,7 +121,7 @@ def interpolate(state: world.State, at: coupling.Windows) -> jax.Array:
 
 
 def copier() -> Callable[[], Any]:
-    """A function that copies an array, on a CPU one on each core."""
+    """Return a function that copies an array, on a CPU one on each core."""
     if jax.default_backend() != "cpu":
         copy = partial(jax.jit(lambda x: x + 1), jnp.zeros(LARGE, jnp.float32))
         copy().block_until_ready()

@@ -47,7 +47,7 @@ class OurPopulation:
         return seconds
 
     def sizes(self) -> tuple[float, float, int]:
-        """Mean hidden nodes and connections, and the number of species."""
+        """Return mean hidden nodes and connections, and the number of species."""
         nodes = float(jnp.mean(jnp.sum(self.networks.node_used, 1))) - INPUTS - OUTPUTS
         connections = float(jnp.mean(jnp.sum(self.networks.connection_used, 1)))
         return nodes, connections, int(jnp.sum(self.species.alive))

@@ -50,9 +50,6 @@ METHODS: dict[str, dict[str, Any]] = {
     "curiosity": emitters(NEAT | {"select": "curiosity"}),
     "crossover": emitters(NEAT | {"crossover": 0.3}),
     "NEAT + MAP-Elites": emitters(NEAT, {"operator": "population"}),
-    "bandit": emitters(
-        NEAT, {"operator": "random"}, NEAT | {"crossover": 0.5}, bandit={"window": 50}
-    ),
     "dominated novelty": container("dominated-novelty", size=400),
     "learned axes": container("learned", bins=20),
     "Pareto fronts": container("fronts"),
@@ -83,7 +80,7 @@ TESTED = 4
 RECORD = Path(__file__).with_name("searches.csv")
 """Figures of finished runs."""
 RUN = ("preset", "axes", "method", "generations", "seed")
-"""What a run is known by in the record."""
+"""Columns that identify a run in the record."""
 
 
 def main() -> None:

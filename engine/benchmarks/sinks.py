@@ -31,7 +31,7 @@ class Times(NamedTuple):
 
     wall: float
     cpu: float
-    """Of the run's own process."""
+    """Processor time of the run's own process."""
     calls: float
     """Spent in calls of the sinks, which is all that the run waits for."""
 

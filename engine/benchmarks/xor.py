@@ -48,7 +48,7 @@ def xor(seeds: int) -> None:
 
 
 def solve(key: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Success, generations evaluated, and hidden nodes of the solution."""
+    """Return success, generations evaluated, and hidden nodes of the solution."""
     step = partial(neat.next_generation, settings=XOR, inputs=INPUTS, outputs=1, key=key)
     minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, 1, *ROOM, XOR.rates.palette))
     networks = minimal(jax.random.split(key, XOR.population))

@@ -1,10 +1,14 @@
 """Build the native kernel and install it beside this Python; `make install` runs it.
 
+`install.py STAMP` touches this file once the kernel is installed.
+
 Uses the system's C++ compiler, or else Zig's from the package registry, which is removed
-afterwards. Without both nothing is installed: JAX then simulates, several times slower.
+afterwards. Without both nothing is installed, and an older kernel is removed: JAX then
+simulates, several times slower.
 """
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -19,28 +23,35 @@ PIP = [sys.executable, "-m", "pip", "-q", "--disable-pip-version-check"]
 PIP_BUILD = ["--no-build-isolation", "--no-deps"]
 
 
-def main() -> None:
+def main(stamp: str | None = None) -> None:
     with tempfile.TemporaryDirectory(prefix="microcosmos-") as place:
         compiler = system_compiler() or zig_compiler(Path(place))
         if compiler and build(compiler):
+            if stamp:
+                Path(stamp).touch()
             return
+    # An older kernel would go on in silence, and may expect other operands.
+    subprocess.run([*PIP, "-q", "uninstall", "-y", "microcosmos-kernels"])
     reason = f"{compiler} could not build it" if compiler else "there is no C++ compiler"
-    print(f"SKIPPED: the native kernel, {reason}; JAX simulates, several times slower")
+    print(
+        f"SKIPPED: the native kernel, {reason}; JAX simulates, several times slower. A kernel "
+        "that was installed before is removed, since it may be of other sources."
+    )
 
 
 def system_compiler() -> str | None:
     names = (os.environ.get("CXX"), "c++", "g++", "clang++")
-    return next((found for name in names if name and (found := shutil.which(name))), None)
+    return next((path for name in names if name and (path := shutil.which(name))), None)
 
 
 def zig(place: Path) -> str | None:
     """Return the program of Zig: that of this environment, or else fetched into a folder."""
     try:
-        found = metadata.distribution("ziglang")
+        installed = metadata.distribution("ziglang")
     except metadata.PackageNotFoundError:
-        found = None
-    if found and f"ziglang=={found.version} " in ZIG.read_text():
-        return str(found.locate_file("ziglang/zig"))
+        installed = None
+    if installed and f"ziglang=={installed.version} " in ZIG.read_text():
+        return str(installed.locate_file("ziglang/zig"))
     print("Fetching a C++ compiler for the native kernel ...")
     fetch = [*PIP, "install", "--require-hashes", "--target", place, "-r", ZIG]
     return None if subprocess.run(fetch).returncode else os.fspath(place / "ziglang" / "zig")
@@ -53,10 +64,11 @@ def zig_compiler(place: Path) -> str | None:
         return None
     # Zig adds checks of undefined behaviour that need a library of its own. It compiles its C++
     # library once for programs and libraries if both are stripped and have the same addressing.
+    cache = os.environ.get("ZIG_GLOBAL_CACHE_DIR") or os.fspath(place / "cache")
     command.write_text(
         f"#!/bin/sh\n"
-        f"export ZIG_GLOBAL_CACHE_DIR=${{ZIG_GLOBAL_CACHE_DIR:-{place / 'cache'}}}\n"
-        f'exec {program} c++ -fno-sanitize=all -fPIC -s "$@"\n'
+        f"export ZIG_GLOBAL_CACHE_DIR={shlex.quote(cache)}\n"
+        f'exec {shlex.quote(program)} c++ -fno-sanitize=all -fPIC -s "$@"\n'
     )
     command.chmod(0o755)
     return os.fspath(command)
@@ -75,4 +87,4 @@ def tools(compiler: str) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

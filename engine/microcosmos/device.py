@@ -23,7 +23,7 @@ _STARTED = (
     "so that every core works."
 )
 KERNELS = ("auto", "native", "jax")
-"""What may simulate worlds: the native kernel where it can, it alone, or JAX alone."""
+"""Choices of the simulator: the native kernel where it can, the kernel alone, JAX alone."""
 KERNEL_VARIABLE = "MICROCOSMOS_KERNEL"
 PORTABLE = {
     "x86_64": "--xla_cpu_max_isa=AVX --xla_cpu_experimental_ynn_fusion_type=",
@@ -36,7 +36,7 @@ programs give the same bits on all of these, as the native kernel does. On ARM o
 machine combiner fuses at XLA's usual level of optimisation, except in vectors of scalable
 length (SVE). Programs of x86-64 are slower by a quarter."""
 PORTABLE_JAXLIB = ("0.10.2",)
-"""Versions with which that was tested; XLA ends a process for flags that it does not know."""
+"""Versions with which the flags were tested; XLA ends a process for flags that it lacks."""
 QUICK = {"xla_backend_optimization_level": 0, "xla_cpu_use_fusion_emitters": False}
 """Compiler options that save optimisations; results keep their bits (compared on x86-64)."""
 GPU_FLAGS = "--xla_gpu_deterministic_ops=true --xla_gpu_autotune_level=0"
@@ -47,9 +47,9 @@ def array(values: ArrayLike, dtype: DTypeLike | None = None) -> jax.Array:
 
     `jnp.asarray` compiles a program for each shape, unless the type stays as it is.
     """
-    found = np.asarray(values, dtype)
-    kept = jax.dtypes.canonicalize_dtype(found.dtype)
-    return jnp.asarray(found.astype(kept, copy=False), kept)
+    on_host = np.asarray(values, dtype)
+    kept = jax.dtypes.canonicalize_dtype(on_host.dtype)
+    return jnp.asarray(on_host.astype(kept, copy=False), kept)
 
 
 def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) -> None:
@@ -58,16 +58,19 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
     On a CPU, one device per core (or `devices`) gives every core its own block; results do not
     depend on the number, nor, with the native kernel, on the processor. If JAX has started, it
     keeps its devices, with a warning. Compiled programs are cached in
-    JAX_COMPILATION_CACHE_DIR, or in `cache`.
+    JAX_COMPILATION_CACHE_DIR, or in `cache`. Raises `ValueError` for a wrong
+    MICROCOSMOS_KERNEL.
     """
+    kernel()
     jax.config.update("jax_default_matmul_precision", "highest")
     try:
         jax.config.update("jax_num_cpu_devices", devices or cores())
-    except RuntimeError:
+    except RuntimeError:  # JAX has started, and has read its flags and its cores.
         warnings.warn(_STARTED.format(jax.local_device_count()), stacklevel=2)
     else:
         if Path("/proc/driver/nvidia").exists():
-            _add_flags(GPU_FLAGS)
+            for flag in GPU_FLAGS.split():
+                _add_flags(flag)
     if cache and not os.environ.get("JAX_COMPILATION_CACHE_DIR"):
         jax.config.update("jax_compilation_cache_dir", os.fspath(cache))
     # Cache small programs too, so that a resumed run starts within a second.
@@ -76,14 +79,15 @@ def prepare(devices: int | None = None, cache: str | os.PathLike | None = None) 
 
 
 def _started() -> bool:
-    """Return whether JAX has started, and so has read its flags."""
+    """Return whether JAX has started, after which it no longer reads flags."""
     bridge = import_module("jax._src.xla_bridge")  # JAX has no public name for it.
     return getattr(bridge, "backends_are_initialized", lambda: False)()
 
 
 def _portable() -> str | None:
     """Return the flags with which programs give the same bits on every processor, if wanted."""
-    wanted = kernel() != "jax" and _installed() is not None
+    # A wrong choice is refused by `prepare`: on import it would be a traceback.
+    wanted = os.environ.get(KERNEL_VARIABLE) != "jax" and _installed() is not None
     return portable_flags() if wanted else None
 
 
@@ -94,9 +98,10 @@ def portable_flags() -> str | None:
 
 
 def _add_flags(added: str) -> None:
-    """Add flags of XLA, unless the first of them has been set."""
+    """Add flags of XLA, unless one of them has been set."""
     flags = os.environ.get("XLA_FLAGS", "")
-    if added.partition("=")[0] not in flags:
+    chosen, names = ({one.partition("=")[0] for one in all.split()} for all in (flags, added))
+    if not chosen & names:
         os.environ["XLA_FLAGS"] = f"{flags} {added}".strip()
 
 
@@ -109,7 +114,7 @@ def cores() -> int:
 
 def kernel() -> str:
     """Return the choice of MICROCOSMOS_KERNEL; raise `ValueError` unless it is in `KERNELS`."""
-    chosen = os.environ.get(KERNEL_VARIABLE, KERNELS[0])
+    chosen = os.environ.get(KERNEL_VARIABLE) or KERNELS[0]
     if chosen not in KERNELS:
         allowed = ", ".join(KERNELS)
         raise ValueError(f"`{KERNEL_VARIABLE}` must be one of {allowed}, got {chosen!r}")
@@ -144,6 +149,7 @@ def device_kind(*, portable: bool = True) -> str:
     device = jax.local_devices()[0]
     model, flags = device.device_kind, set(os.environ.get("XLA_FLAGS", "").split())
     if device.platform == "cpu":
+        # With all flags in force bits do not depend on the processor, which is then not named.
         needed = set((portable_flags() or "").split())
         alike = portable and kernel_version() and needed and needed <= flags
         model, flags = ("", flags - needed) if alike else (_processor(), flags)

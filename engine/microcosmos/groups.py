@@ -12,7 +12,7 @@ class Groups(eqx.Module):
     member: Int[Array, "node"]
     count: int = eqx.field(static=True)
     ascending: bool = eqx.field(static=True, default=True)
-    """Whether nodes stand in the order of their bodies, which makes sums faster."""
+    """True if nodes stand in the order of their bodies, which makes sums faster."""
 
     def total(self, values: Float[Array, "node *rest"]) -> Float[Array, "group *rest"]:
         """Return the sum over the nodes of each group."""

@@ -30,6 +30,7 @@ ESCAPES = {
 
 
 def latex(text: str) -> str:
-    """Return the text for LaTeX: special letters escaped, others as UTF-8."""
-    text = text.replace(" %", THIN + "%")
+    """Return the text as one line for LaTeX: special letters escaped, others as UTF-8."""
+    # A line break would end a comment (test_latex_is_a_booktabs_table_of_escaped_words).
+    text = " ".join(text.splitlines()).replace(" %", THIN + "%")
     return "".join(ESCAPES.get(letter, letter) for letter in text)

@@ -3,7 +3,7 @@
 from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping
 from hashlib import sha256
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import rfc8785
@@ -15,75 +15,10 @@ LICENCE = "CC-BY-4.0"
 ACTIVATIONS = ("identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square")
 """Activations, in the order of their numbers in genomes."""
 
-MeasureName = Literal[
-    "displacement",
-    "bending_effort",
-    "stretching_effort",
-    "path_length",
-    "straightness",
-    "rotation",
-    "hidden_nodes",
-    "connections",
-    "energy",
-    "mach",
-    "limited",
-    "reynolds",
-    "mean_speed",
-    "turning",
-    "curvature_mean",
-    "curvature_spread",
-    "symmetry",
-    "power",
-    "efficiency",
-    "nodes",
-    "speed",
-    "stride",
-    "impulse",
-    "cost_of_transport",
-    "beats",
-    "wave_number",
-    "wave_direction",
-    "heading_angle",
-    "aspect",
-    "strouhal",
-    "advance",
-    "trial_spread",
-    "segments",
-    "free_ends",
-    "rings",
-    "total_length",
-    "form_symmetry",
-    "form_aspect",
-    "ungrown",
-    "crossing",
-]
-"""Names of the measures, in the order in which they are recorded."""
-
-FORMS: tuple[MeasureName, ...] = (
-    "segments",
-    "free_ends",
-    "rings",
-    "total_length",
-    "form_symmetry",
-    "form_aspect",
-    "ungrown",
-)
-"""Names of the measures of form; see `bodies.growth.form`."""
-
-WITHOUT_GRADIENT: tuple[MeasureName, ...] = (
-    "hidden_nodes",
-    "connections",
-    "nodes",
-    "limited",
-    "trial_spread",
-    *FORMS,
-    "crossing",
-)
-"""Measures without derivatives: counts, the form at rest, and shares of steps and poses."""
-
 
 def encode(values: np.ndarray) -> str:
-    """Encode little-endian float32 as base64, with −0 as 0."""
+    """Encode values as little-endian float32 in base64, with −0 as 0."""
+    # −0 + 0 is 0: equal genes must have equal bytes, and so one name.
     return b64encode((np.asarray(values, "<f4") + np.float32(0)).tobytes()).decode()
 
 
@@ -95,6 +30,7 @@ def decode(text: str) -> np.ndarray:
     values = np.frombuffer(data, "<f4")
     if not np.all(np.isfinite(values)):
         raise ValueError("needs finite values, got NaN or infinity")
+    # One creature has one name: other texts of the same numbers are refused.
     if encode(values) != text:
         raise ValueError("needs the canonical encoding, got another (write −0 as 0)")
     return values

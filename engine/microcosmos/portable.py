@@ -12,9 +12,9 @@ from jax.lax import optimization_barrier
 from jaxtyping import Array, Float, Int
 
 TURNS = 1011.5928344726562
-"""161 turns in rad, to single precision."""
+"""161 turns in rad: of the first 400 multiples of a turn the nearest to a float32."""
 EXCESS = 1.67427e-8
-"""By how much `TURNS` is too large."""
+"""Excess of `TURNS` over 161 turns, in rad."""
 QUARTER = 1.5703125, 4.8375129699707031e-4, 7.54978995489188216e-8
 """A quarter turn in three parts, of which small multiples are exact (Cody and Waite)."""
 
@@ -23,6 +23,7 @@ def product(
     one: Float[Array, "row item"], other: Float[Array, "item column"]
 ) -> Float[Array, "row column"]:
     """Return the product of two matrices, as written-out sums."""
+    # `matmul` would go to a library, which splits sums as the processor likes.
     return jnp.sum(one[:, :, None] * other[None], 1)
 
 
@@ -40,14 +41,16 @@ def long_product(
 
 
 def root(x: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
-    """Return the square root, by which others may be divided."""
+    """Return the square root in a form by which values may be divided."""
+    # The barrier keeps XLA from turning x / √y into x times an approximate reciprocal root.
     return optimization_barrier(jnp.sqrt(x))
 
 
 def power(base: float, exponent: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
-    """Return a power of a base that is not negative."""
-    found = jnp.exp(exponent * jnp.log(jnp.asarray(base, exponent.dtype)))
-    return jnp.where(exponent == 0, 1.0, found)
+    """Return a power of a base that is not negative; x⁰ = 1 also for x = 0."""
+    # XLA takes `pow` from the C library, but has programs of its own for both of these.
+    value = jnp.exp(exponent * jnp.log(jnp.asarray(base, exponent.dtype)))
+    return jnp.where(exponent == 0, 1.0, value)
 
 
 @jax.custom_jvp
@@ -68,8 +71,8 @@ def cosine(x: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
     return _of_quarter(rest, quarters + 1)
 
 
-sine.defjvps(lambda tangent, found, x: cosine(x) * tangent)
-cosine.defjvps(lambda tangent, found, x: -sine(x) * tangent)
+sine.defjvps(lambda tangent, value, x: cosine(x) * tangent)
+cosine.defjvps(lambda tangent, value, x: -sine(x) * tangent)
 
 
 @jax.custom_jvp
@@ -87,13 +90,14 @@ def arctangent(y: Float[Array, "*shape"], x: Float[Array, "*shape"]) -> Float[Ar
     angle = (p * z - 3.33329491539e-1) * z * u + u
     angle = jnp.where(steep, angle + 0.78539816, angle)
     angle = jnp.where(high > wide, 1.5707963 - angle, angle)
+    # By the sign bit, not by x < 0: −0 has an angle of π, as in the C library.
     angle = jnp.where(jnp.signbit(x), 3.1415927 - angle, angle)
     return jnp.where(jnp.signbit(y), -angle, angle)
 
 
 arctangent.defjvps(
-    lambda tangent, found, y, x: x / (x * x + y * y) * tangent,
-    lambda tangent, found, y, x: -y / (x * x + y * y) * tangent,
+    lambda tangent, value, y, x: x / (x * x + y * y) * tangent,
+    lambda tangent, value, y, x: -y / (x * x + y * y) * tangent,
 )
 
 
@@ -101,8 +105,10 @@ def _reduced(
     x: Float[Array, "*shape"],
 ) -> tuple[Float[Array, "*shape"], Int[Array, "*shape"]]:
     """Return angles within an eighth of a turn, and the quarter turns taken off."""
+    # The remainder is exact, so that large angles lose only the excess of `TURNS`.
     near = jax.lax.rem(x, jnp.full_like(x, TURNS))
     quarters = jnp.round(near * 0.63661977)
+    # Beyond 6 · 10⁹ rad a float32 is no angle; the bound keeps the polynomial in its range.
     excess = jnp.clip(jnp.round((x - near) / TURNS) * EXCESS, -0.1, 0.1)
     for part in QUARTER:
         near = near - quarters * part
@@ -117,5 +123,5 @@ def _of_quarter(
     s = ((-1.9515295891e-4 * z + 8.3321608736e-3) * z - 1.6666654611e-1) * z * rest + rest
     c = (2.443315711809948e-5 * z - 1.388731625493765e-3) * z + 4.166664568298827e-2
     c = c * z * z - 0.5 * z + 1.0
-    found = jnp.where(quarters & 1, c, s)
-    return jnp.where(quarters & 2, -found, found)
+    value = jnp.where(quarters & 1, c, s)
+    return jnp.where(quarters & 2, -value, value)

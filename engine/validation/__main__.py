@@ -17,11 +17,11 @@ def main(sections: tuple[Section, ...] = SECTIONS, docs: Path = DOCS) -> int:
     results = [(section, measure(section)) for section in sections]
     folder = docs / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
-    for _, found in results:
-        for plot in found.plots:
+    for _, findings in results:
+        for plot in findings.plots:
             save(plot, folder / figure_name(plot.name))
     (docs / "validation.md").write_text(document(results, folder.name), encoding="utf-8")
-    lines = [pair for _, found in results for pair in found.pairs]
+    lines = [pair for _, findings in results for pair in findings.pairs]
     for pair in lines:
         for name, row in pair.rows.items():
             if not row.passed:
@@ -35,10 +35,10 @@ def measure(section: Section) -> Findings:
     """Run the checks of a section on every path that they take."""
     pairs, plots = [], []
     for number, check in enumerate(section.checks, 1):
-        here = f"{section.title} {number}/{len(section.checks)}"
-        found = paired(carry_out(check, here))
-        pairs += found.pairs
-        plots += found.plots
+        title = f"{section.title} {number}/{len(section.checks)}"
+        findings = paired(carry_out(check, title))
+        pairs += findings.pairs
+        plots += findings.plots
     return Findings(pairs, plots)
 
 

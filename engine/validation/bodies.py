@@ -1,4 +1,4 @@
-"""Bodies in a fluid: passive ones in a shear flow, repulsion, random controllers.
+"""Checks of bodies in a fluid: passive ones in a shear flow, repulsion, random controllers.
 
 A passive circle turns with half of the shear. The tangent of a slender rod's angle grows with
 the shear: G. B. Jeffery, Proc. R. Soc. A 102, 161 (1922).
@@ -53,12 +53,13 @@ def turn_and_shear(
     u = jnp.asarray(np.stack([wave, np.zeros(SIZE)]), dtype)
     start = replace(start, populations=fluid.equilibrium(jnp.ones(SIZE, dtype), u))
     positions = scenes.recorded(box, start, scenes.held(body, steps, dtype), path)
+    # The flow decays while the body turns, so the shear is summed step by step.
     decay = np.exp(-viscosity * k**2 * np.arange(steps))
     return rotation(positions), float(speed * k * np.sum(decay))
 
 
 def check_passive(dtype: Any = "float32", path: Path = JAX) -> Result:
-    """A ring, and a rod that starts across the flow."""
+    """Check the turn of a ring, and of a rod that starts across the flow."""
     ring, ring_shear = turn_and_shear(bodies.ring(28, 1.0), dtype, path=path)
     across = bodies.placed(bodies.chain(12, 1.0), (0.0, 0.0), turned=np.pi / 2)
     rod, rod_shear = turn_and_shear(across, dtype, path=path)
@@ -72,7 +73,7 @@ def check_passive(dtype: Any = "float32", path: Path = JAX) -> Result:
 
 
 def check_repulsion(steps: int = 300, dtype: Any = "float32", path: Path = JAX) -> Result:
-    """The final gap between two parallel chains, and the largest net force on either."""
+    """Check the final gap between two parallel chains, and the largest net force on either."""
     pair, limits = scenes.parallel_chains(20, 1.0), scenes.limits(0.3, dtype)
     steric = scenes.steric(4.0, dtype)
     box, start = scenes.immersed(pair, 0.3, dtype, steric=steric, limits=limits)
@@ -90,7 +91,7 @@ def check_repulsion(steps: int = 300, dtype: Any = "float32", path: Path = JAX) 
 
 @partial(jax.jit, static_argnames="path")
 def _survive(path, box, start, rests):
-    """Return for each rest shape if all numbers stay finite and all speeds subsonic."""
+    """Return a flag for each motion: all numbers stay finite and all speeds subsonic."""
 
     def survives(rest):
         end, _ = roll(path, box, start, rest)

@@ -54,7 +54,7 @@ class Case:
 
 
 def forces(case: Case, path: Path = JAX):
-    """Drag and lift coefficients after every step, and the fluid at the end."""
+    """Return the fluid at the end, and drag and lift coefficients after every step."""
     dtype = jnp.dtype("float32")
     viscosity = case.speed * case.thickness / case.reynolds
     nodes = circle(case.diameter / 2, _centre(case))
@@ -68,7 +68,7 @@ def forces(case: Case, path: Path = JAX):
 
 
 def circle(radius: float, centre: tuple[float, float]) -> np.ndarray:
-    """Nodes on a circle, at most a cell apart."""
+    """Return nodes on a circle, at most a cell apart."""
     nodes = int(np.ceil(2 * np.pi * radius))
     turn = 2 * np.pi * np.arange(nodes) / nodes
     return radius * np.stack([np.cos(turn), np.sin(turn)], 1) + np.array(centre)
@@ -108,12 +108,13 @@ def around_held(
 
 
 def _centre(case: Case) -> tuple[float, float]:
-    """A third of the box behind the sponge, off the axis so that the wake can oscillate."""
+    """Return the centre, a third of the box behind the sponge."""
+    # Off the axis and off the grid: in a symmetric start no wake would begin to oscillate.
     return 0.36 * case.size[0] + 0.3, case.size[1] / 2 + 0.2
 
 
 def _sponge(case: Case, dtype) -> fluid.Sponge:
-    """A sponge at the box's seam, two diameters to either side, strongest at the seam."""
+    """Return a sponge two diameters to either side of the box's seam, strongest at the seam."""
     x, reach = np.arange(case.size[0]), 2.0 * case.diameter
     distance = np.minimum(x, case.size[0] - x) / reach
     profile = 0.05 * np.where(distance < 1, np.cos(0.5 * np.pi * distance) ** 2, 0.0)
@@ -122,7 +123,7 @@ def _sponge(case: Case, dtype) -> fluid.Sponge:
 
 
 def _start(case: Case, dtype) -> fluid.Populations:
-    """The free stream, with a swirl behind the cylinder that a wake can grow from."""
+    """Return the free stream, with a swirl behind the cylinder from which a wake can grow."""
     x, y = np.meshgrid(*(np.arange(n) for n in case.size), indexing="ij")
     centre = _centre(case)
     away = (x - centre[0] - 2 * case.diameter) ** 2 + (y - centre[1]) ** 2
@@ -132,11 +133,12 @@ def _start(case: Case, dtype) -> fluid.Populations:
 
 
 def frequency(lift: np.ndarray) -> float:
-    """Frequency per sample of a periodic signal, from its upward passages through the mean."""
+    """Return the frequency per sample of a signal, by its upward passages through the mean."""
     signal = lift - lift.mean()
     before = np.flatnonzero((signal[:-1] < 0) & (signal[1:] >= 0))
     if len(before) < 2:
         return float("nan")
+    # Interpolated between samples: a period has few of them.
     passages = before + signal[before] / (signal[before] - signal[before + 1])
     return (len(passages) - 1) / (passages[-1] - passages[0])
 
@@ -169,7 +171,7 @@ def check(cases: tuple[Case, ...] = CASES, share: float = 0.08, path: Path = JAX
 
 
 def series(share: float) -> float:
-    """Drag over viscosity and mean velocity by theory, for solid shares up to about 0.2."""
+    """Return drag over viscosity and mean velocity by theory, for solid shares up to 0.2."""
     c = share
     return 4 * np.pi / (-0.5 * np.log(c) - 0.738 + c - 0.887 * c**2 + 2.038 * c**3)
 

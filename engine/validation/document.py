@@ -28,7 +28,7 @@ DASH = "–"
 
 def document(results: list[tuple[Section, Findings]], pictures: str) -> str:
     """Return the whole text; `pictures` is the figures' folder relative to it."""
-    lines = [pair for _, found in results for pair in found.pairs]
+    lines = [pair for _, findings in results for pair in findings.pairs]
     failed = sum(not pair.passed for pair in lines)
     verdict = f"**{failed} FAIL**" if failed else "all pass"
     covered = sum(pair.kernel is not None for pair in lines)
@@ -38,7 +38,7 @@ def document(results: list[tuple[Section, Findings]], pictures: str) -> str:
     counts = f"{len(lines)} lines, {covered} of them in the kernel too, {verdict}."
     parts = [HEAD, f"{counts} {machine}.\n"]
     parts += [] if kernel else [ALONE]
-    parts += [_section(section, found, pictures) for section, found in results]
+    parts += [_section(section, findings, pictures) for section, findings in results]
     return "\n".join(parts)
 
 
@@ -46,14 +46,14 @@ def figure_name(plot: str) -> str:
     return f"validation-{plot}.png"
 
 
-def _section(section: Section, found: Findings, pictures: str) -> str:
+def _section(section: Section, findings: Findings, pictures: str) -> str:
     text = " ".join(
         [section.text, *(check.lacking for check in section.checks if check.lacking)]
     )
     lines = [f"## {section.title}\n", textwrap.fill(text, 100), ""]
     lines += ["| quantity | reference | JAX | kernel | bar | |", "|---|---|---|---|---|---|"]
-    lines += [_line(pair) for pair in found.pairs]
-    for plot in found.plots:
+    lines += [_line(pair) for pair in findings.pairs]
+    for plot in findings.plots:
         path = Path(pictures) / figure_name(plot.name)
         lines.append(f"\n![{section.title}: {plot.y} against {plot.x}]({path.as_posix()})")
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""Boxes that specs describe: obstacles and flows, against closed forms and published drag."""
+"""Checks of boxes that specs describe: obstacles and flows, against theory and experiment."""
 
 from typing import Literal
 
@@ -30,11 +30,12 @@ def post_drag(radius: float, cell: int, path: Path = JAX) -> float:
     f = after(still, steps, viscosity, fluid.fixed_magic, around, path)
     driven = jnp.where(solid[None], 0.0, jnp.asarray([force, 0.0], jnp.float32)[:, None, None])
     mean = np.mean(np.asarray(velocity(f, driven)[0], float))
+    # The force acts in every cell of the box, and in the steady state the post takes all of it.
     return float(force * cell**2 / (viscosity * mean))
 
 
 def check_posts(radii: tuple[float, ...] = (3, 5, 8), path: Path = JAX) -> Result:
-    """The surface is a staircase, half a cell outside the solid cells' middles."""
+    """Check the drag of posts, whose surface is a staircase half a cell outside solid cells."""
     rows, cell = [], 64
     for radius in radii:
         error = post_drag(radius, cell, path) / series(np.pi * radius**2 / cell**2) - 1
@@ -53,13 +54,13 @@ def in_flow(
     """Return a body at a place in a flow of a spec, and its first state."""
     flow = spec.Flow(kind=kind, speed=speed)
     box = spec.World(width=SIDE, height=SIDE, viscosity=viscosity, flow=flow)
-    found = build_world(box, spec.Coupling(), body)
+    built = build_world(box, spec.Coupling(), body)
     arms = body.positions - body.positions.mean(0)
-    return found, build_start(box, found, arms + np.array(place))
+    return built, build_start(box, built, arms + np.array(place))
 
 
 def flow_error(kind: Kind, viscosity: float, steps: int, path: Path = JAX) -> float:
-    """Return how far the fluid of a spec is from its closed form after `steps`."""
+    """Return the relative L2 distance of a spec's fluid from its closed form after `steps`."""
     flow = spec.Flow(kind=kind, speed=0.01)
     box = spec.World(width=SIDE, height=SIDE, viscosity=viscosity, flow=flow)
     exact, around = build_flow(box), build_surroundings(box)
@@ -68,13 +69,13 @@ def flow_error(kind: Kind, viscosity: float, steps: int, path: Path = JAX) -> fl
     start = build_start(box, build_world(box, spec.Coupling(), pair), pair.positions)
     f = after(start.populations, steps, viscosity, around=around, path=path)
     force = exact.force if exact.force.ndim == 3 else exact.force[:, None, None]
-    found = velocity(f, jnp.broadcast_to(jnp.asarray(force, jnp.float32), (2, SIDE, SIDE)))
+    u = velocity(f, jnp.broadcast_to(jnp.asarray(force, jnp.float32), (2, SIDE, SIDE)))
     fluids = np.ones((SIDE, SIDE), bool) if box.solid is None else ~box.solid
-    return distance(np.asarray(found)[:, fluids], exact.velocity[:, fluids])
+    return distance(np.asarray(u)[:, fluids], exact.velocity[:, fluids])
 
 
 def check_flows(steps: int = 10_000, path: Path = JAX) -> Result:
-    """Flows stay as they start. Λ is capped, as for creatures."""
+    """Check that flows stay as they start. Λ is capped, as for creatures."""
     rows = []
     for kind in ("poiseuille", "shear", "vortices"):
         for viscosity in (0.01, 0.05, 0.5):
@@ -85,7 +86,7 @@ def check_flows(steps: int = 10_000, path: Path = JAX) -> Result:
 
 
 def check_carried(steps: int = 4000, path: Path = JAX) -> Result:
-    """A ring turns with half the shear; two nodes across the flow move at its speed."""
+    """Check that a ring turns with half the shear, and that two nodes move with the flow."""
     ring = bodies.ring(16, 1.0)
     box, start = in_flow("shear", ring, (SIDE / 2, SIDE / 2), 0.1, 0.02)
     end, _ = roll(path, box, start, scenes.held(ring, steps, "float32"))

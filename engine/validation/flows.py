@@ -1,4 +1,4 @@
-"""Flows that no body disturbs in closed form, and conservation of mass and momentum."""
+"""Checks of undisturbed flows against closed forms, and of mass and momentum."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,11 +17,11 @@ from .rows import Line, Plot, Result, Row, at_least, at_most
 EXACT = "closed form"
 VISCOUS_TIMES = 5
 THIN = 4
-"""Cells across a flow that is uniform that way: a delta needs them."""
+"""Cells along an axis on which a flow does not depend: the window of a delta needs them."""
 
 
 def distance(u, exact) -> float:
-    """Relative L2 distance of two fields."""
+    """Return the relative L2 distance of two fields."""
     u, exact = np.asarray(u, float), np.asarray(exact, float)
     return float(np.sqrt(np.sum((u - exact) ** 2) / np.sum(exact**2)))
 
@@ -34,7 +34,7 @@ def after(
     around: fluid.Surroundings | None = None,
     path: Path = JAX,
 ) -> fluid.Populations:
-    """The fluid after a rollout whose body goes with the flow and exerts no force on it."""
+    """Return the fluid after a rollout whose body goes with the flow and exerts no force."""
     dtype, body = f[0].dtype, bodies.chain(2, 1.0)
     form = world.Form(
         projection=coupling.unprojected, force_factor=0.0, forcing_iterations=1, magic=magic
@@ -47,7 +47,7 @@ def after(
 
 
 def velocity(f: fluid.Populations, force: fluid.Vectors) -> fluid.Vectors:
-    """The velocity with the half step of force of Guo's scheme."""
+    """Return the velocity, with the half step of force of Guo's scheme."""
     return (jnp.stack(fluid.momentum(f)) + 0.5 * force) / fluid.density(f)[None]
 
 
@@ -61,14 +61,12 @@ def _decayed(u, rho, viscosity, magic, steps, dtype, path):
 def shear_wave_rate(
     tau: float, magic: Callable, dtype: Any, n: int = 64, path: Path = JAX
 ) -> float:
-    """Rate at which a transverse wave decays, over ν k².
-
-    The measurement starts after a tenth of the wave's lifetime, when the stress has formed.
-    """
+    """Return the rate at which a transverse wave decays, divided by ν k²."""
     k, viscosity = 2 * np.pi / n, (tau - 0.5) / 3
     wave = np.broadcast_to(np.sin(k * np.arange(n))[:, None], (n, THIN))
     u, rho = 0.01 * np.stack([0 * wave, wave]), np.ones((n, THIN))
     life = 1 / (viscosity * k**2)
+    # The stress forms in the first tenth of the lifetime, which does not count.
     early, late = (round(share * life) for share in (0.1, 1.1))
     heights = [
         np.sum(np.asarray(_decayed(u, rho, viscosity, magic, s, dtype, path)[1], float) * wave)
@@ -78,7 +76,7 @@ def shear_wave_rate(
 
 
 def kolmogorov_error(tau: float, magic: Callable, dtype: Any, n: int = 64) -> float:
-    """Distance from the steady flow under a sine force, started on it.
+    """Return the distance from the steady flow under a sine force, in which the fluid starts.
 
     The flow is uniform along x, so two cells of length suffice.
     """
@@ -102,10 +100,11 @@ def kolmogorov_error(tau: float, magic: Callable, dtype: Any, n: int = 64) -> fl
 def taylor_green_error(
     n: int, tau: float, magic: Callable, dtype: Any, speed: float = 0.01, path: Path = JAX
 ) -> float:
-    """Distance from decaying vortices, started with their pressure field."""
+    """Return the distance from decaying vortices, which start with their pressure field."""
     k, viscosity = 2 * np.pi / n, (tau - 0.5) / 3
     x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
     u = np.stack([-np.cos(k * x) * np.sin(k * y), np.sin(k * x) * np.cos(k * y)]) * speed
+    # Without the pressure field sound waves would spoil the order of convergence.
     rho = 1 - 0.75 * speed**2 * (np.cos(2 * k * x) + np.cos(2 * k * y))
     steps = round(1 / (4 * viscosity * k**2))
     end = _decayed(u, rho, viscosity, magic, steps, dtype, path)
@@ -113,10 +112,8 @@ def taylor_green_error(
 
 
 def orders(dtype: Any, sizes: tuple[int, ...] = (16, 32, 64), path: Path = JAX) -> list[float]:
-    """Order of convergence of Taylor-Green vortices between successive sizes.
-
-    The Mach number falls with the cell size, else its error would remain.
-    """
+    """Return the order of convergence of Taylor-Green vortices between successive sizes."""
+    # The Mach number falls with the cell size, else its error would remain.
     magic = fluid.fixed_magic
     errors = [
         taylor_green_error(n, 0.8, magic, dtype, speed=0.64 / n, path=path) for n in sizes
@@ -159,7 +156,7 @@ TAUS = (0.53, 0.6, 0.8, 1.0, 2.0, 6.5)
 def check_shear_wave(
     taus: tuple[float, ...] = TAUS, dtype: Any = "float32", path: Path = JAX
 ) -> Result:
-    """The bar grows with τ ν k², which the scheme needs to be small."""
+    """Check the decay; the bar grows with τ ν k², which the scheme needs to be small."""
     rows = []
     for tau in taus:
         error = abs(shear_wave_rate(tau, fluid.fixed_magic, dtype, path=path) - 1)
@@ -183,7 +180,7 @@ def check_kolmogorov(dtype: Any = "float32") -> Result:
 
 
 def check_taylor_green(dtype: Any = "float32", path: Path = JAX) -> Result:
-    """The error falls with the square of the cell size."""
+    """Check the error and that it falls with the square of the cell size."""
     rows, taus = [], (0.53, 0.6, 0.8)
     for (kind, magic), at, bar in ((FIXED, (*taus, 1.0), 1.5e-3), (CAPPED, taus, 2e-3)):
         for tau in at:
@@ -205,7 +202,7 @@ def check_poiseuille(
     dtype: Any = "float64",
     path: Path = JAX,
 ) -> Result:
-    """At Λ = 3/16 nothing but rounding is left.
+    """Check the walls and the flow of a channel: at Λ = 3/16 nothing but rounding is left.
 
     A step may round the velocity by 2⁻²³ of it in float32. That acts as a force does, and the
     driving force is 8 ν / width² of the velocity.
@@ -234,7 +231,7 @@ def _channel(form, tau: float, bar: float, dtype: Any, path: Path) -> list[Row]:
 def check_conservation(
     size: tuple[int, int] = (64, 64), dtype: Any = "float32", path: Path = JAX
 ) -> Result:
-    """Relative drift of mass, and of momentum against cells times speed, from random flow."""
+    """Check the drift of mass, and of momentum over cells times speed, from random flow."""
     rows, law, steps, speed = [], "conservation", 10_000, 0.01
     for viscosity in (0.01, 0.1, 2.0):
         random = np.random.default_rng(0)

@@ -1,4 +1,4 @@
-"""Gradients through coupled steps against central differences."""
+"""Checks of gradients through coupled steps against central differences."""
 
 from dataclasses import replace
 from typing import Any

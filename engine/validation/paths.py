@@ -47,6 +47,6 @@ def roll(
     rest: filaments.Rest,
     observe: Callable[[world.Measures], Any] = nothing,
 ) -> tuple[world.State, Any]:
-    """Return the state after all steps of a rollout, and what is observed of its measures."""
+    """Return the state after all steps of a rollout, and the observation of its measures."""
     end, measures = path.rollout(box, start, rest)
     return end, observe(measures)

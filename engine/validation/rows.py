@@ -21,28 +21,29 @@ class Row:
 
     @property
     def passed(self) -> bool:
+        # A lower bound has no upper one, so that infinity would pass.
         return math.isfinite(self.value) and self.low <= self.value <= self.high
 
 
 def at_most(quantity: str, value: float, bar: float, source: str) -> Row:
-    """Row of an error, whose reference is zero."""
+    """Return the row of an error, whose reference is zero."""
     return Row(quantity, float(value), 0.0, bar, f"≤ {bar:g}", 0.0, source)
 
 
 def at_least(quantity: str, value: float, bar: float, reference: float, source: str) -> Row:
-    """Row of a number with a lower bound."""
+    """Return the row of a number with a lower bound."""
     return Row(quantity, float(value), bar, math.inf, f"≥ {bar:g}", reference, source)
 
 
 def close(quantity: str, value: float, reference: float, share: float, source: str) -> Row:
-    """Row of a number within a share of a published or exact one."""
+    """Return the row of a number within a share of a published or exact one."""
     reach, bar = abs(reference) * share, f"± {100 * share:g} %"
     low, high = reference - reach, reference + reach
     return Row(quantity, float(value), low, high, bar, float(reference), source)
 
 
 def holds(quantity: str, fact: bool, source: str) -> Row:
-    """Row of a statement: 1 if it is true, else 0."""
+    """Return the row of a statement: 1 if it is true, else 0."""
     return Row(quantity, float(fact), 1.0, 1.0, "yes", 1.0, source)
 
 

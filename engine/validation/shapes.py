@@ -1,4 +1,4 @@
-"""Constraint projection without a fluid: bodies take their rest shape."""
+"""Checks that bodies take their rest shape, by constraint projection without a fluid."""
 
 from dataclasses import replace
 from typing import Any
@@ -28,7 +28,7 @@ def taken(
 ) -> np.ndarray:
     """Return the positions after one step without a fluid, with `turn` added to rest angles.
 
-    The body takes its rest shape by sweeps over the constraints; None: by shape matching.
+    The body takes its rest shape by so many `sweeps` over the constraints; None: by matching.
     """
     form = world.Form(fluid=False, constraint_iterations=sweeps or 1)
     box, _ = scenes.immersed(body, 1.0, dtype, form=form)
@@ -39,7 +39,7 @@ def taken(
 
 
 def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
-    """Root mean square errors of angles (radians) and lengths (shares)."""
+    """Return root mean square errors of angles (radians) and lengths (shares)."""
     v = positions[body.edges[:, 1]] - positions[body.edges[:, 0]]
     theta = np.arctan2(v[:, 1], v[:, 0])
     bend = theta[body.joints[:, 1]] - theta[body.joints[:, 0]] - body.rest_angle
@@ -49,7 +49,7 @@ def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:
 
 
 def circle(nodes: int, iterations: int, dtype: Any, path: Path = JAX) -> tuple[float, float]:
-    """Errors of a straight chain whose rest shape is a circle."""
+    """Return the errors of a straight chain whose rest shape is a circle."""
     straight = bodies.chain(nodes, 1.0)
     round_body = replace(straight, rest_angle=np.full(nodes - 2, 2 * np.pi / nodes))
     return errors(
@@ -60,7 +60,7 @@ def circle(nodes: int, iterations: int, dtype: Any, path: Path = JAX) -> tuple[f
 def branched(
     noise: float, iterations: int, dtype: Any, seed: int = 0, path: Path = JAX
 ) -> tuple[float, float]:
-    """Errors of a ring with hairs whose nodes start displaced by `noise` cells."""
+    """Return the errors of a ring with hairs whose nodes start displaced by `noise` cells."""
     body = swimmers.cilia().body
     moved = np.random.default_rng(seed).normal(size=body.positions.shape)
     return errors(
@@ -74,7 +74,7 @@ SPACINGS = (0.5, 1.0, 1.5)
 
 
 def worm(spacing: float) -> swimmers.Swimmer:
-    """A worm with the same curvature over its length at any node spacing."""
+    """Return a worm with the same curvature over its length at any node spacing."""
     body = bodies.chain(round(LENGTH / spacing) + 1, spacing)
     share = body.arc[body.joint_nodes]
 
@@ -86,29 +86,30 @@ def worm(spacing: float) -> swimmers.Swimmer:
 
 
 def curve(points: int, time: float, fine: int = 20_000) -> np.ndarray:
-    """Evenly spaced points of the curve with the worm's curvature, relative to their mean."""
+    """Return even points of the curve with the worm's curvature, relative to their mean."""
     s = (np.arange(fine) + 0.5) / fine
     turn = BEND * LENGTH / (2 * np.pi)
     angle = turn * (np.cos(2 * np.pi * time) - np.cos(2 * np.pi * (s - time)))
     step = LENGTH / fine * np.stack([np.cos(angle), np.sin(angle)], 1)
     whole = np.concatenate([np.zeros((1, 2)), np.cumsum(step, 0)])
-    found = whole[np.linspace(0, fine, points).astype(int)]
-    return found - found.mean(0)
+    chosen = whole[np.linspace(0, fine, points).astype(int)]
+    return chosen - chosen.mean(0)
 
 
 def shape_error(spacing: float, times: int = 8, path: Path = JAX) -> float:
-    """Largest distance of the matched worm from its curve, turned to fit, over its length."""
+    """Return the largest distance of the matched worm from its curve, over its length."""
     swimmer, largest = worm(spacing), 0.0
     angle, _ = swimmer.gait(np.arange(times) / times)
     for number in range(times):
         points = curve(len(swimmer.body.positions), number / times)
-        found = taken(swimmer.body, points, "float32", path, turn=angle[number])
-        largest = max(largest, float(np.max(np.hypot(*(found - points).T))) / LENGTH)
+        # The body starts on the curve, so matching turns it to fit.
+        worm_nodes = taken(swimmer.body, points, "float32", path, turn=angle[number])
+        largest = max(largest, float(np.max(np.hypot(*(worm_nodes - points).T))) / LENGTH)
     return largest
 
 
 def check_matching(path: Path = JAX) -> Result:
-    """Shape matching at three node spacings, against the curve that the nodes stand for."""
+    """Check shape matching at three node spacings against the curve that nodes stand for."""
     return Result(
         [
             at_most(f"worm, spacing {spacing:g}: distance / length",

@@ -1,4 +1,4 @@
-"""Taylor's swimming sheet: a transverse wave that travels along a sheet drives it.
+"""Check of Taylor's swimming sheet, which a transverse wave along it drives.
 
 To fourth order in the amplitude, without inertia: G. I. Taylor, Proc. R. Soc. A 209, 447
 (1951). Inertia lowers the second order: E. O. Tuck, J. Fluid Mech. 31, 305 (1968).
@@ -20,7 +20,7 @@ SOURCE = "Taylor 1951, Tuck 1968"
 
 @dataclass(frozen=True)
 class Sheet:
-    """One wavelength across the box, far from its images above and below."""
+    """A sheet of one wavelength across the box, far from its images above and below."""
 
     wavelength: int
     height: int
@@ -40,7 +40,7 @@ class Sheet:
 
 
 def theory(sheet: Sheet) -> float:
-    """Speed against the wave and the fluid far away, in cells a step."""
+    """Return the speed against the wave and the fluid far away, in cells a step."""
     steep = (sheet.wavenumber * sheet.amplitude) ** 2
     taylor = 0.5 * sheet.frequency / sheet.wavenumber * steep * (1 - 19 / 16 * steep)
     grown = np.sqrt((1 + np.sqrt(1 + sheet.inertia**2)) / 2)
@@ -63,8 +63,8 @@ def speed(sheet: Sheet, periods: int, path: Path = JAX) -> float:
     angle, length = shapes_of(nodes[1:])
     seen = [_seen(sheet, state)]
     for sample in range(periods * SAMPLES):
-        here = slice(sample * part, (sample + 1) * part)
-        rest = filaments.Rest(*(jnp.asarray(x[here], "float32") for x in (angle, length)))
+        steps = slice(sample * part, (sample + 1) * part)
+        rest = filaments.Rest(*(jnp.asarray(x[steps], "float32") for x in (angle, length)))
         state, _ = roll(path, box, state, rest)
         seen.append(_seen(sheet, state))
     place, far = np.transpose(seen[-1 - SAMPLES :])
@@ -72,7 +72,7 @@ def speed(sheet: Sheet, periods: int, path: Path = JAX) -> float:
 
 
 def _pair(sheet: Sheet, nodes: np.ndarray) -> tuple[world.World, world.State]:
-    """A world with a filament through the nodes of both sheets, and its first state."""
+    """Return a world with a filament through the nodes of both sheets, and its first state."""
     number = np.arange(len(nodes))
     body = bodies.from_edges(nodes, np.stack([number[:-1], number[1:]], 1))
     form = world.Form(
@@ -84,7 +84,7 @@ def _pair(sheet: Sheet, nodes: np.ndarray) -> tuple[world.World, world.State]:
 
 
 def _seen(sheet: Sheet, state: world.State) -> tuple[float, float]:
-    """Where the body is along x, and the velocity of the fluid halfway between the sheets."""
+    """Return the body's place along x, and the fluid's velocity halfway between the sheets."""
     momentum = np.asarray(fluid.momentum(state.populations)[0], float)
     place = np.mean(np.asarray(state.positions[:, 0], float))
     return float(place), float(np.mean(momentum[:, [0, sheet.height]]))

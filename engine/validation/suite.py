@@ -10,11 +10,11 @@ from .rows import Result
 
 @dataclass(frozen=True)
 class Check:
-    """A measurement; it takes a `path` unless only JAX can carry it out."""
+    """A measurement, which takes a `path` unless JAX alone can carry it out."""
 
     measure: Callable[..., Result]
     lacking: str = ""
-    """Why the kernel cannot, as a sentence of the document."""
+    """The reason why the kernel cannot, as a sentence of the document."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The five known swimmers at every viscosity, against the Microcosmos paper."""
+"""Check of the five known swimmers at every viscosity, against the Microcosmos paper."""
 
 import os
 from unittest.mock import patch
@@ -38,7 +38,7 @@ def check(
     rest: float = 0.1,
     path: Path = JAX,
 ) -> Result:
-    """Rows for each force-free form, and a plot for each form.
+    """Return rows for each force-free form, and a plot for each form.
 
     Inertia is negligible from the viscosity `creeping` on. At the highest viscosity a
     reciprocal swimmer may reach at most the share `rest` of its best.

@@ -1,4 +1,4 @@
-"""Swimmers against Stokes flow, the scallop theorem and Newton's third law.
+"""Checks of swimmers against Stokes flow, the scallop theorem and Newton's third law.
 
 Fourier series solve Stokes flow in the same periodic box independently. The nodes act on it
 through the same delta. Neither viscosity nor time matters: the sequence of shapes alone
@@ -31,14 +31,14 @@ def second_cycle(
     path: Path = JAX,
     **options: Any,
 ) -> np.ndarray:
-    """Positions from the start of a swimmer's second cycle to its end."""
+    """Return positions from the start of a swimmer's second cycle to its end."""
     box, start = scenes.immersed(swimmer.body, viscosity, dtype, **options)
     gait = scenes.stroke(swimmer, period, 2, dtype)
     return scenes.recorded(box, start, gait, path)[-period - 1 :]
 
 
 def scallop_share(dtype: Any, path: Path = JAX, **options: Any) -> float:
-    """Displacement over path in the second cycle of a reciprocal swimmer at ν = 2."""
+    """Return displacement over path in the second cycle of a reciprocal swimmer at ν = 2."""
     cycle = second_cycle(swimmers.ray(), 2.0, 400, dtype, path, **options)
     moves = np.diff(cycle, axis=0)
     path = np.mean(np.sum(np.hypot(moves[..., 0], moves[..., 1]), 0))
@@ -47,8 +47,9 @@ def scallop_share(dtype: Any, path: Path = JAX, **options: Any) -> float:
 
 @partial(jax.jit, static_argnames="path")
 def _momenta(path, box, start, shapes):
-    """The end, and the fluid's momentum after every step: after rollouts of one step each."""
+    """Return the end, and the fluid's momentum after every step."""
 
+    # Rollouts of one step each: the kernel records no momentum of the fluid.
     def advance(state, rest):
         one = jax.tree.map(lambda x: x[None], rest)
         state, _ = roll(path, box, state, one)
@@ -60,7 +61,7 @@ def _momenta(path, box, start, shapes):
 def largest_impulse(
     box: world.World, start: world.State, shapes: filaments.Rest, path: Path = JAX
 ) -> float:
-    """The largest impulse that bodies give the fluid; NaN if they do not stay finite."""
+    """Return the largest impulse that bodies give the fluid; NaN if they do not stay finite."""
     end, impulses = _momenta(path, box, start, shapes)
     largest = np.sqrt(np.max(np.sum(np.asarray(impulses, float) ** 2, 1)))
     return float(largest) if np.all(np.isfinite(end.positions)) else float("nan")
@@ -71,7 +72,7 @@ def check_worm(
     samples: int = 50,
     path: Path = JAX,
 ) -> Result:
-    """The worm's second cycle against Stokes flow; cases are viscosity, period and bar."""
+    """Check the worm's second cycle; cases are viscosity, period and bar."""
     rows = []
     for viscosity, period, share in cases:
         cycle = second_cycle(swimmers.worm(), viscosity, period, "float32", path, size=SIZE)
@@ -87,7 +88,7 @@ def check_spacing(
     period: int = 500,
     path: Path = JAX,
 ) -> Result:
-    """The same worm at other node spacings, in cells a cycle."""
+    """Check the cells a cycle of the same worm at other node spacings."""
 
     def cells(spacing: float) -> float:
         swimmer = shapes.worm(spacing)
@@ -131,7 +132,7 @@ def check_impulse(
 
 
 def stokes_displacement(positions: np.ndarray, samples: int) -> np.ndarray:
-    """The displacement of a body in Stokes flow by the same sequence of shapes.
+    """Return the displacement of a body in Stokes flow by the same sequence of shapes.
 
     At `samples` times, forces without net force and torque make the fluid follow the nodes
     up to a rigid motion.
@@ -146,6 +147,8 @@ def stokes_displacement(positions: np.ndarray, samples: int) -> np.ndarray:
 
 
 def _free_velocity(x: np.ndarray, change: np.ndarray) -> np.ndarray:
+    # Unknowns are the forces at nodes and a rigid motion; the last three rows say that the
+    # forces have neither sum nor torque.
     nodes, arm = len(x), x - x.mean(0)
     one, none = np.ones(nodes), np.zeros(nodes)
     rigid = np.block([[one, none], [none, one], [-arm[:, 1], arm[:, 0]]]).T
@@ -156,20 +159,20 @@ def _free_velocity(x: np.ndarray, change: np.ndarray) -> np.ndarray:
 
 @jax.jit
 def _deltas(positions):
-    """The density that each node alone spreads on the grid."""
+    """Return the density that each node alone spreads on the grid."""
     at = coupling.windows(positions, SIZE, world.Form().kernel)
     alone = jnp.eye(len(positions))[:, :, None]
     return jax.vmap(lambda one: coupling.spread(one, at, SIZE)[0])(alone)
 
 
 def mobility(positions: np.ndarray) -> np.ndarray:
-    """Velocities at nodes by forces there, x before y, for a viscosity of 1."""
+    """Return the matrix from forces to velocities at nodes, x before y, at viscosity 1."""
     nodes = len(positions)
     deltas = np.asarray(_deltas(jnp.asarray(positions)))
     kx, ky = (2 * np.pi * np.fft.fftfreq(n) for n in SIZE)
     k = np.stack(np.meshgrid(kx, ky, indexing="ij"))
     square = np.sum(k**2, 0)
-    square[0, 0] = np.inf
+    square[0, 0] = np.inf  # Forces without a sum leave the mean flow at rest.
     waves = np.fft.fft2(deltas)
 
     def block(i, j):

@@ -32,11 +32,11 @@ from rich.table import Table
 
 from microcosmos.archive import columns
 from microcosmos.spec import parse
-from server.attempts.attempt import Attempt
-from server.attempts.claim import claim
-from server.runs.submission import submit
-from server.services.services import Services, connect
-from server.settings import Settings
+from microcosmos_server.attempts.attempt import Attempt
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.services.services import Services, connect
+from microcosmos_server.settings import Settings
 
 SIDE = 100
 FILLED = 1000
@@ -44,15 +44,19 @@ FILLED = 1000
 RATE, BESIDE = 50.0, 10.0
 """Requests a second for the archive, and for the run beside it."""
 POSTING, WATCHERS, ATTACKERS = 4, 200, 45
+CONNECTED = 5.0
+"""Seconds until all watchers are connected."""
 PAUSE = 0.2
 """Seconds between two generations that watchers see."""
+SERVERS = (1, 2)
+"""Processes that answer requests, of each loaded installation."""
 PROBES = 20.0
 """Requests a second for `/healthz` during the attack."""
 
 
 @dataclass(frozen=True)
 class Length:
-    """How long each part lasts."""
+    """The length of each part in seconds."""
 
     archive: float
     """Seconds of archives."""
@@ -68,7 +72,7 @@ SHORT = Length(archive=8.0, posts=100, watch=10.0, rounds=2)
 
 @dataclass
 class Figures:
-    """What was measured of one server."""
+    """The measurements of one server."""
 
     milliseconds: dict[str, list[float]] = field(default_factory=dict)
     notes: dict[str, str] = field(default_factory=dict)
@@ -90,7 +94,7 @@ def serving(servers: int, elites: int) -> Iterator[tuple[Installation, Attempt]]
         tempfile.TemporaryDirectory() as folder,
         running(Path(folder) / "data", settings) as product,
     ):
-        redis = product.named("server.main")[0].environ()["MICROCOSMOS_REDIS_URL"]
+        redis = product.named("microcosmos_server.main")[0].environ()["MICROCOSMOS_REDIS_URL"]
         services = connect(Settings(data=product.folder, redis_url=redis))
         yield product, recorded(services, elites)
         services.close()
@@ -195,7 +199,7 @@ class Clients:
         last = first + round(length.watch / PAUSE)
         asked = (clients.watch, port, path, WATCHERS // 2, last)
         waiting = [self.pool.submit(*asked) for _ in range(2)]
-        time.sleep(5.0)  # Until all are connected.
+        time.sleep(CONNECTED)
         sizes = []
         for number in range(first, last + 1):
             attempt.record(reports.report(number, {5: 0.0}), 1.0)
@@ -219,7 +223,7 @@ class Clients:
 
 def processes(product: Installation) -> list[psutil.Process]:
     """The processes that answer requests."""
-    (first,) = product.named("server.main")
+    (first,) = product.named("microcosmos_server.main")
     return [first, *first.children(recursive=True)]
 
 
@@ -255,7 +259,7 @@ def main() -> None:
         parser.add_argument(f"--{name}", type=type(default), default=default)
     length = Length(**vars(parser.parse_args()))
     found = {"empty": measure(1, 1, SHORT, loaded=False)}
-    for servers in (1, 2):
+    for servers in SERVERS:
         name = f"SERVERS={servers}, {SIDE * SIDE:,} cells"
         found[name] = measure(servers, SIDE * SIDE, length, loaded=True)
     Console(width=120).print(table(found))

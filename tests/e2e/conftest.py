@@ -2,9 +2,8 @@
 
 Starting a product and compiling its programs take longer than most tests. So tests share:
 `shared` has small runs of each kind, and computes what else is submitted there; at `idle`
-nobody computes: files whose tests need no more are in without_workers/. A test that needs a
-list of runs of its own, or ends the server, takes `product` before `page`, and is in
-own_product/. A process takes one of the three folders.
+nobody computes: files whose tests need no more are in without_workers/. A test that needs a new
+installation, or ends the server, is in own_product/. A process takes one of the three folders.
 """
 
 from typing import NamedTuple
@@ -16,13 +15,13 @@ from drive import QUICK, ROOT, Installation, running
 from playwright.sync_api import expect
 from small_runs import submit_small_runs
 
-from server.services.services import Services, connect
-from server.settings import Settings
+from microcosmos_server.services.services import Services, connect
+from microcosmos_server.settings import Settings
 
 WINDOW = {"width": 1280, "height": 900}
 ACTION_MS = 120_000
-LONGEST = ("test_walk.py", "test_resume.py")
-"""Others run beside these."""
+ODD_NAME = "data?1 #%:;& жизнь"
+"""A data folder is where its name says, whatever that is."""
 
 expect.set_options(timeout=30_000)
 
@@ -42,11 +41,6 @@ class Idle(NamedTuple):
 
     product: Installation
     services: Services
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run the longest tests first."""
-    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 @pytest.fixture(scope="package")
@@ -74,7 +68,7 @@ def product(product_settings, tmp_path):
 @pytest.fixture(scope="package")
 def shared(product_settings, tmp_path_factory):
     """One product for most tests, which computes a run of each kind."""
-    with running(tmp_path_factory.mktemp("shared") / "data", product_settings) as product:
+    with running(tmp_path_factory.mktemp("shared") / ODD_NAME, product_settings) as product:
         yield Shared(product, submit_small_runs(product))
 
 
@@ -84,8 +78,8 @@ def idle(product_settings, tmp_path_factory):
     folder = tmp_path_factory.mktemp("idle")
     with own_redis(folder) as url:
         environment = {"WORKERS": "0", "MICROCOSMOS_REDIS_URL": url}
-        with running(folder / "data", product_settings | environment) as product:
-            services = connect(Settings(data=folder / "data", redis_url=url))
+        with running(folder / ODD_NAME, product_settings | environment) as product:
+            services = connect(Settings(data=folder / ODD_NAME, redis_url=url))
             yield Idle(product, services)
             services.close()
 

@@ -91,7 +91,7 @@ def take_all(browser: Browser, address: str) -> list[str]:
                 save(photographed(page, width, height), name)
                 print(name, flush=True)
             context.close()
-    return wrong
+    return [one for one in wrong if not one.endswith("/nowhere")]  # 404 is its status.
 
 
 def photographed(page: Page, width: int, height: int) -> bytes:

@@ -2,7 +2,6 @@
 
 import re
 
-from layout import violations
 from pages import TOUR_TAKEN, expect_in_url, the_map
 from playwright.sync_api import Locator, Page, expect
 from small_runs import TINY
@@ -19,10 +18,7 @@ def test_a_run_is_forked_extended_deleted_and_restored(page, shared, complaints)
     page.add_init_script(TOUR_TAKEN)
     page.goto(f"{address}/runs/{run}")
     choose_by_keyboard(page)
-    choose_by_mouse(page)
-    fork_the_chosen(page, address, run)
-    fork_the_past(page, address, run)
-    fork = fork_an_elite_in_another_viscosity(page, address, run)
+    fork = fork_the_chosen_in_another_viscosity(page, address, run)
     shared.product.wait(fork, "finished")
     extend_by_keyboard(page)
     shared.product.wait(fork, "finished")
@@ -40,79 +36,35 @@ def chosen(page: Page) -> Locator:
 def choose_by_keyboard(page: Page) -> None:
     """Space toggles a cell, Shift with an arrow adds one, Escape clears the selection."""
     the_map(page).focus()
-    for key in ("ArrowRight", "Space"):
-        page.keyboard.press(key)
-    expect(chosen(page)).to_have_text("1 creature selected")
-    page.keyboard.press("Space")
-    expect(chosen(page)).to_be_empty()
     for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"):
         page.keyboard.press(f"Shift+{key}")
     expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures selected$"))
     text = chosen(page).inner_text()
     page.reload()
     expect(chosen(page)).to_have_text(text)
-    assert violations(page) == []
     the_map(page).focus()
     page.keyboard.press("Escape")
     expect(chosen(page)).to_be_empty()
     expect_in_url(page, "cells=", False)
+    for key in ("ArrowRight", "Space"):
+        page.keyboard.press(key)
+    expect(chosen(page)).to_have_text("1 creature selected")
 
 
-def choose_by_mouse(page: Page) -> None:
-    """Drag a box over the map, then remove one elite by the button."""
-    box = the_map(page).bounding_box()
-    assert box
-    page.mouse.move(box["x"] + 2, box["y"] + 2)
-    page.mouse.down()
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    page.mouse.move(box["x"] + box["width"] - 2, box["y"] + box["height"] - 2)
-    page.mouse.up()
-    expect(chosen(page)).to_have_text(re.compile(r"^\d+ creatures selected$"))
-    assert re.search(r"/runs/[^/]+\?", page.url), "a drag opens no creature"
-    selected = int(chosen(page).inner_text().split()[0])
-    page.get_by_role("button", name="Select", exact=True).click()
-    expect(chosen(page)).to_have_text(re.compile(f"^{selected - 1} creatures? selected$"))
-
-
-def fork_the_chosen(page: Page, address: str, run: str) -> None:
-    """The form names the selected creatures and links back to them."""
-    text = chosen(page).inner_text().removesuffix(" selected")
+def fork_the_chosen_in_another_viscosity(page: Page, address: str, run: str) -> str:
+    """Fork the selected creature, and return the id of the new run."""
     page.locator(".selection-bar").get_by_role("link", name="Fork").click()
     beginning = page.locator(".base-bar")
-    expect(beginning).to_contain_text(f"Starts from {text} of run {run[:8]}.")
-    expect_in_url(page, "cells=")
-    expect(page.get_by_label("Estimate", exact=True)).to_be_visible()
-    beginning.get_by_role("link", name=text).click()
-    expect(chosen(page)).to_have_text(f"{text} selected")
-
-
-def fork_the_past(page: Page, address: str, run: str) -> None:
-    page.goto(f"{address}/runs/{run}?at=1")
-    bar = page.locator(".selection-bar")
-    expect(bar).to_contain_text(re.compile(r"^\d+ creatures? of generation 1"))
-    bar.get_by_role("link", name="Fork").click()
-    expect(page.locator(".base-bar")).to_contain_text(
-        f"of run {run[:8]}, taken after generation 1."
-    )
-
-
-def fork_an_elite_in_another_viscosity(page: Page, address: str, run: str) -> str:
-    """Fork one elite, and return the id of the new run."""
-    page.goto(f"{address}/runs/{run}")
-    the_map(page).focus()
-    page.keyboard.press("ArrowRight")
-    page.locator("#elite-measures").get_by_role("link", name="Fork").click()
-    expect(page.locator(".base-bar")).to_contain_text("Starts from 1 creature")
+    expect(beginning).to_contain_text(f"Starts from 1 creature of run {run[:8]}.")
     essentials = page.get_by_role("group", name="The essentials", exact=True)
     essentials.get_by_label("Viscosity", exact=True).fill(str(VISCOSITY))
     page.get_by_label("Name of the run").fill(NAME)
     page.keyboard.press("ControlOrMeta+Enter")
     page.wait_for_url(re.compile(r"/runs/[0-9a-f-]{36}$"))
     expect(page.get_by_text("Started from 1 creature of")).to_be_visible()
-    expect(page.get_by_role("heading", level=1)).to_contain_text(NAME)
     fork = page.url.rpartition("/")[2]
     made = page.request.get(f"{address}/api/v1/runs/{fork}").json()
-    assert made["spec"]["world"]["viscosity"] == VISCOSITY
+    assert (made["name"], made["spec"]["world"]["viscosity"]) == (NAME, VISCOSITY)
     assert made["forked_from"] == {"run": run, "creatures": 1}
     return fork
 
@@ -131,7 +83,6 @@ def extend_by_keyboard(page: Page) -> None:
 def bin_and_undo(page: Page) -> None:
     page.get_by_role("button", name=f"Delete {NAME}").click()
     expect(page.get_by_text("This run is in the bin")).to_be_visible()
-    assert violations(page) == []
     expect(page.get_by_role("button", name="Undo")).to_be_visible()
     page.keyboard.press("ControlOrMeta+z")
     expect(the_map(page)).to_be_visible()
@@ -143,8 +94,7 @@ def bin_and_restore(page: Page, address: str, fork: str) -> None:
     page.goto(address)
     page.get_by_role("link", name="Bin").click()
     row = page.get_by_role("row", name=re.compile(NAME))
-    row.get_by_role("button", name=re.compile("^Restore")).focus()
-    page.keyboard.press("Enter")
+    row.get_by_role("button", name=re.compile("^Restore")).press("Enter")
     expect(row).to_have_count(0)
     page.goto(f"{address}/runs/{fork}")
     expect(the_map(page)).to_be_visible()

@@ -7,13 +7,6 @@ from pages import see_it_move, stage, wait_until_still
 from playwright.sync_api import Locator, Page, expect
 
 NAMED = re.compile(r"^fitness .+generation \d+ of ")
-COLOURFUL = """
-(canvas) => {
-  const { width, height } = canvas;
-  return new Set(canvas.getContext("2d").getImageData(0, 0, width, height).data).size > 1;
-}
-"""
-"""Whether anything is drawn on a canvas."""
 COUNT_CLICKS = """
 addEventListener("click", ({ isTrusted }) => {
   if (isTrusted) localStorage.setItem("clicks", 1 + Number(localStorage.getItem("clicks")));
@@ -71,20 +64,9 @@ def test_creatures_swim_until_they_are_paused(home):
     home.get_by_role("button", name="Pause the creatures").click()
     home.mouse.move(5, 5)
     wait_until_still(swimmers(home))
+    expect(point_at_a_creature(home)).to_have_text(NAMED)
     home.get_by_role("button", name="Let the creatures swim").click()
     see_it_move(swimmers(home))
-
-
-def test_a_creature_is_named_when_pointed_at_and_opens_with_a_click(home, shared):
-    wait_until_drawn(home)
-    home.get_by_role("button", name="Pause the creatures").click()
-    named = point_at_a_creature(home)
-    expect(named).to_have_text(NAMED)
-    home.mouse.down()
-    home.mouse.up()
-    home.wait_for_url(re.compile(r"/creatures/[0-9a-f]{64}$"))
-    creature = home.url.rpartition("/")[2]
-    assert creature in {one["creature"] for one in shared.product.get("tank")["swimmers"]}
 
 
 def test_six_clicks_lead_from_a_first_visit_to_a_shared_creature(settled, page):
@@ -103,34 +85,3 @@ def test_six_clicks_lead_from_a_first_visit_to_a_shared_creature(settled, page):
     expect(stage(opened.value)).to_be_visible()
     assert re.search(r"/s/[\w-]+$", opened.value.url)
     assert 4 <= page.evaluate("Number(localStorage.getItem('clicks'))") <= 6
-
-
-def test_the_keyboard_points_at_creatures_and_opens_them(home, shared):
-    water(home).focus()
-    home.keyboard.press("ArrowRight")
-    named = home.locator("#tank-pointed")
-    expect(named).to_have_text(NAMED)
-    first = named.text_content()
-    home.keyboard.press("ArrowRight")
-    expect(named).not_to_have_text(first or "")
-    home.keyboard.press("ArrowLeft")
-    expect(named).to_have_text(first or "")
-    home.keyboard.press("Enter")
-    best = shared.product.get("tank")["swimmers"][0]["creature"]
-    home.wait_for_url(f"**/creatures/{best}")
-
-
-def test_the_tank_is_still_where_motion_is_reduced(page, settled):
-    page.emulate_media(reduced_motion="reduce")
-    page.goto(settled.product.url)
-    wait_until_drawn(page)
-    wait_until_still(swimmers(page))
-
-
-def test_a_run_has_its_best_creature_beside_its_name(home, shared):
-    row = home.get_by_role("row").filter(has_text=shared.submitted["search"][:8])
-    expect(row).to_have_count(1)
-    face = row.locator(".face canvas")
-    face.scroll_into_view_if_needed()
-    home.wait_for_timeout(500)
-    home.wait_for_function(COLOURFUL, arg=face.element_handle())

@@ -7,10 +7,10 @@ import reports
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.attempts.attempt import Attempt
-from server.attempts.claim import claim
-from server.runs.submission import submit
-from server.services.services import Services
+from microcosmos_server.attempts.attempt import Attempt
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.services.services import Services
 
 GENERATIONS = 12
 
@@ -22,11 +22,15 @@ def report(generation: int, seed: int) -> Any:
         {generation: float(generation)},
         descriptors=(0.01, 0.01),
         summary={
-            "infeasible: non-finite": 2,
-            "infeasible: supersonic": 1,
-            "population: inserted": generation % 3,
-            "population: improved": 1,
-            "species": "0:10 1:6" if generation < GENERATIONS // 2 else "1:16",
+            "infeasible.non-finite": 2,
+            "infeasible.supersonic": 1,
+            "emitter.population.inserted": generation % 3,
+            "emitter.population.improved": 1,
+            **(
+                {"species.0": 10, "species.1": 6}
+                if generation < GENERATIONS // 2
+                else {"species.1": 16}
+            ),
         },
     )
     (elite,) = found.elites

@@ -6,7 +6,6 @@ import pytest
 
 from microcosmos import search
 from microcosmos.build import build, build_task
-from microcosmos.experiments.offspring import divided
 from microcosmos.spec import estimate, parse
 
 SPECS = {
@@ -31,10 +30,9 @@ def test_programs_take_no_more_than_was_estimated(name):
     run = build(spec)
     state = run.init()
     networks = jax.tree.map(lambda x: x[: spec.search.block], state.elites.genotypes)
-    task = build_task(spec.scene, room=run.plan.encoding.room)
+    task = build_task(spec.scene, room=run.facts.encoding.room)
     batched = jax.jit(jax.vmap(lambda network: search.evaluate(task, network)))
-    emitter = divided(run.plan, state)
-    given = (state.emitters, state.elites, state.counters, jnp.asarray(1), emitter)
-    together = taken(run.programs.emit, *given)
-    together += max(taken(run.programs.evaluate_block, networks), taken(batched, networks))
+    given = (state.emitters, state.elites, state.counters, jnp.asarray(1))
+    together = taken(run.plan.steps.emission, *given)
+    together += max(taken(run.plan.evaluate.run, networks), taken(batched, networks))
     assert together <= estimate(spec).memory_bytes

@@ -7,22 +7,18 @@ from microcosmos import units
 
 
 @pytest.mark.fast
-def test_reynolds_and_strouhal_numbers_are_the_same_in_both_units():
-    length, viscosity, speed, period = 31.0, 0.05, 0.01, 600
-    scales = units.Scales.of(1e-3, length, viscosity)
-    metres, seconds = scales.metres(length), scales.seconds(period)
-    assert metres == pytest.approx(1e-3)
-    here = units.reynolds(speed, length, viscosity)
-    there = units.reynolds(scales.speed(speed), metres, units.WATER)
-    assert here == pytest.approx(there, rel=1e-12)
-    assert metres / (seconds * scales.speed(speed)) == pytest.approx(length / (period * speed))
-
-
-@pytest.mark.fast
-@pytest.mark.parametrize("given", [(0, 31, 0.1), (1e-3, -1, 0.1), (1e-3, 31, 0.0)])
-def test_scales_of_nothing_are_refused(given):
-    with pytest.raises(ValueError, match="above 0, got"):
+@pytest.mark.parametrize("wrong", [0, -1, np.inf, np.nan])
+@pytest.mark.parametrize("place", range(4))
+def test_scales_need_finite_numbers_above_zero(place, wrong):
+    given = [1e-3, 31, 0.1, 200.0]
+    given[place] = wrong
+    with pytest.raises(ValueError, match="must be finite and above 0, got"):
         units.Scales.of(*given)
+    if place == 3 and np.isnan(wrong):  # The steps of a stroke may be unknown.
+        assert np.isnan(units.Scales.of_stroke(*given).step)
+        return
+    with pytest.raises(ValueError, match="must be finite and above 0, got"):
+        units.Scales.of_stroke(*given)
 
 
 @pytest.mark.fast

@@ -16,11 +16,9 @@ import numpy as np
 import pytest
 
 import microcosmos
-from microcosmos.archive.creature import parse
-from microcosmos.audit.reproducibility import check
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-TINY = {"body": {"nodes": 8}, "task": {"steps": 20}}
+TINY = {"body": {"nodes": 8}, "task": {"steps": 20, "fitness": "displacement"}}
 SEARCH = {"generations": 2, "batch": 4, "block": 4}
 
 
@@ -41,6 +39,7 @@ def example(name, needs="jax"):
     return module
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("emitter", ["iso+line", "neat"])
 def test_their_map_elites_evolves_our_creatures_and_networks(emitter):
@@ -49,13 +48,16 @@ def test_their_map_elites_evolves_our_creatures_and_networks(emitter):
     assert np.isfinite(repertoire.fitnesses).any()
 
 
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
 def test_their_cma_mega_climbs_our_slopes():
     module = example("qdax_map_elites", "qdax")
-    longer = {**TINY, "task": {"steps": 80}}
+    longer = {**TINY, "task": {"steps": 100}}
     repertoire = module.main("cma-mega", generations=4, batch=8, **longer)
     assert np.isfinite(repertoire.fitnesses).sum() > 1
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_their_emitters_work_in_our_search(tmp_path):
     module = example("qdax_emitter", "qdax")
@@ -64,12 +66,14 @@ def test_their_emitters_work_in_our_search(tmp_path):
     assert np.isfinite(repertoire.fitnesses).any()
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_pyribs_draws_our_archive(tmp_path):
     picture = example("ribs_heatmap", "ribs").main(tmp_path, **TINY, search=SEARCH)
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("emitter", ["cma-mae", "iso+line"])
 def test_their_schedulers_evolve_our_creatures(emitter):
@@ -110,23 +114,26 @@ def test_a_plugin_task_evolves_and_its_file_names_the_version(tmp_path):
     path = module.main(tmp_path / "plugin.h5", task={"steps": 20}, search=SEARCH)
     source = sha256((EXAMPLES / "plugin_task.py").read_bytes()).hexdigest()
     with h5py.File(path) as file:  # Without the module.
-        spec, names = (json.loads(bytes(file.attrs[name])) for name in ("spec", "measures"))
-        rows, fitness = file["archive/measures"][:], file["archive/fitness"][:]
-        sway = file["archive/descriptors"][:, 0]
+        spec = json.loads(bytes(file.attrs["spec"]))
     for part in (spec["task"], spec["body"], spec["archive"]["descriptors"][0]):
         assert part["plugin"]["source"] == source
-    values = {name: rows[:, names.index(name)] for name in names}
-    straight = values["displacement"] * values["straightness"]
-    np.testing.assert_allclose(fitness, straight, rtol=1e-5, atol=1e-12)
-    np.testing.assert_array_equal(values["plugin_task.straight"], fitness)
-    np.testing.assert_array_equal(values["plugin_task.sway"], sway)
     creature = json.loads(path.with_suffix(".best.json").read_bytes())
-    assert creature["identity"]["task"]["fitness"] == "plugin_task.straight"
     assert creature["identity"]["task"]["plugin"]["source"] == source
-    assert creature["identity"]["body"]["builder"] == "graph"
-    assert check(parse(creature)).exact
 
 
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")
+def test_a_plugin_emitter_evolves_beside_a_built_in_one(tmp_path):
+    module = example("plugin_emitter")
+    search, task = module.SPEC["search"] | SEARCH, TINY["task"]
+    path = module.main(tmp_path / "plugin.h5", task=task, search=search)
+    with h5py.File(path) as file:
+        names = json.loads(bytes(file.attrs["operators"]))
+        made = {names[number] for number in file["lineage/operator"][:].tolist()}
+    assert {"plugin_emitter.fifth", "iso+line"} <= made
+
+
+@pytest.mark.long
 def test_the_searches_of_the_library_page_run_and_find_what_they_print(capsys):
     page = (EXAMPLES.parent / "docs" / "library.md").read_text()
     part = page.partition("## Search of your own")[2].partition("\n## ")[0]
@@ -144,7 +151,6 @@ def test_the_searches_of_the_library_page_run_and_find_what_they_print(capsys):
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples" / "notebooks").glob("*.ipynb"))
 
 BY_HAND = {"archive", "folding", "swimmer"}
-STUDIES = {"bodies", "publish", "pyribs", "viscosity"}
 WIDGET = "application/vnd.jupyter.widget-view+json"
 
 EXECUTE = """
@@ -192,7 +198,3 @@ def test_a_notebook_is_committed_without_outputs(path):
     nbformat.validate(notebook)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert all(cell.outputs == [] and cell.execution_count is None for cell in code)
-
-
-def test_the_notebooks_exist():
-    assert {path.stem for path in NOTEBOOKS} == BY_HAND | STUDIES

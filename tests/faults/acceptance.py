@@ -6,9 +6,9 @@ five searches at equal evaluations, five seeds each, submitted over HTTP; a run 
 killed, stopped, paused and resumed, whose archive has to be byte for byte the undisturbed
 one, as has that of a second installation, on PostgreSQL and a Redis server; creatures that
 sense and collect energy; searches with derivatives and without; a page that is left open for
-half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; and a
-search on an emulated older processor; deaths of jobs and hosts; twenty hosts with 500 runs
-in a bad night; and the native kernel beside JAX in 200 random specs.
+half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; a
+search on an emulated older processor; deaths of jobs and hosts; twenty hosts with 500 runs in a
+bad night; and the native kernel beside JAX in 200 random specs.
 Names of parts choose some.
 """
 
@@ -46,6 +46,8 @@ from zoo import bodies
 from microcosmos.spec.quality_diversity import PRESETS
 
 FAULTS = (kill_job, stop_worker, kill_job, pause_and_resume, kill_job)
+LATEST = 44
+"""The last generation in which a fault may come."""
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "0", "MICROCOSMOS_CHECKPOINT_INTERVAL": "5"}
 
 
@@ -71,7 +73,7 @@ DOCUMENTS = {
 def disturb(product: Installation, document: dict, undisturbed: bytes) -> bool:
     """Tell whether a run disturbed at random moments ends with the same bytes."""
     run = product.submit(document)
-    moments = sorted(random.choices(range(1, 45), k=len(FAULTS)))
+    moments = sorted(random.choices(range(1, LATEST + 1), k=len(FAULTS)))
     faults = list(zip(moments, FAULTS, strict=True))
     interrupt(product, run, faults, seconds=2 * HOURS)
     attempts = product.wait(run, "finished", seconds=2 * HOURS)["attempt"]
@@ -123,7 +125,7 @@ def databases(product: Installation) -> bool:
 def uploads(product: Installation) -> bool:
     """Tell whether thousands of malformed files are refused in time, and no other is read."""
     canary = product.folder / "canary.h5"
-    canary.write_bytes(malformed_hdf5.whole())
+    canary.write_bytes(malformed_hdf5.valid_file())
     with watched(canary) as readings:
         found = send(product, all_cases(canary))
     rich.print(

@@ -55,7 +55,7 @@ class Cluster:
         return started
 
     def schedule(self) -> subprocess.Popen[bytes]:
-        command = ("-m", "microcosmos.cli", "cluster", "scheduler", self.url)
+        command = ("-m", "microcosmos", "cluster", "scheduler", self.url)
         started = self.start("scheduler", *command)
         wait_until(lambda: "may join" in self.output("scheduler"), 120, "it listens")
         return started
@@ -165,7 +165,7 @@ def with_helpers(made: Cluster, expected: str) -> list[str]:
         made.join(f"helper {count}")
         name = f"with {count}"
         found = made.finish(name, made.run(name, made.url))
-        devices = max(report["cluster: devices"] for report in made.reports(name))
+        devices = max(report["cluster.devices"] for report in made.reports(name))
         if (found, devices) != (expected, count):
             wrong.append(f"{devices} helpers instead of {count} computed {found}")
     return wrong
@@ -184,7 +184,7 @@ def through_the_queue(made: Cluster, services: dict[str, str]) -> list[str]:
             product.wait(run, "finished", seconds=600)
             found.append(sha256(product.archive(run)).hexdigest())
         summary = product.get(f"runs/{runs[0]}/generations")["summary"]
-    wrong = [] if max(summary["cluster: devices"]) > 2 else ["the workers had no helpers"]
+    wrong = [] if max(summary["cluster.devices"]) > 2 else ["the workers had no helpers"]
     for number, (one, digest) in enumerate(zip(specs, found, strict=True)):
         made.spec.write_text(json.dumps(one))
         if made.finish(name := f"alone {number}", made.run(name)) != digest:

@@ -6,6 +6,7 @@ import socket
 import sqlite3
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
@@ -27,6 +28,7 @@ QUICK = {
 SHORT = QUICK | {
     "MICROCOSMOS_DEMONSTRATION": "0",
     "MICROCOSMOS_CHECKPOINT_INTERVAL": "0.2",
+    "MICROCOSMOS_SEGMENT_BYTES": "256",  # Else columns of small runs fill none.
     "MICROCOSMOS_LEASE": "3",
     "MICROCOSMOS_RECONCILE_INTERVAL": "0.5",
 }
@@ -34,6 +36,7 @@ SHORT = QUICK | {
 TERMINAL = ("finished", "failed", "cancelled")
 SERVICES = ("MICROCOSMOS_REDIS_URL", "MICROCOSMOS_DATABASE_URL", "MICROCOSMOS_ARTIFACTS_URL")
 """Settings that an installation does not inherit."""
+JOB, SUPERVISOR = "microcosmos_worker.job_process", "microcosmos_worker.supervisor"
 
 
 def wait_until(
@@ -55,12 +58,15 @@ def free_port() -> int:
 
 
 class Installation:
-    """`python -m server.local` in a data folder; `environment` holds its settings."""
+    """A product in a data folder; `environment` holds its settings, `port` that of one that
+    another process has started."""
 
-    def __init__(self, folder: Path, environment: dict[str, str]) -> None:
+    def __init__(
+        self, folder: Path, environment: dict[str, str], port: int | None = None
+    ) -> None:
         self.folder, self.environment = folder, environment
         self.output = folder / "output.txt"
-        self.port = free_port()
+        self.port = port or free_port()
         self.url = f"http://127.0.0.1:{self.port}"
         self.http = httpx.Client(base_url=self.url, timeout=30)
 
@@ -70,7 +76,7 @@ class Installation:
         inherited = {name: value for name, value in os.environ.items() if name not in SERVICES}
         with self.output.open("ab") as output:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "server.local"],
+                [sys.executable, "-m", "microcosmos_server.local"],
                 cwd=ROOT,
                 env=inherited | self.environment | settings,
                 stdin=subprocess.DEVNULL,
@@ -184,7 +190,8 @@ class Installation:
 
         def resume() -> None:
             for process in processes:
-                process.resume()
+                with suppress(psutil.NoSuchProcess):  # It may be killed while it is frozen.
+                    process.resume()
 
         def freeze() -> bool:
             for process in processes:
@@ -201,6 +208,32 @@ class Installation:
             yield
         finally:
             resume()
+
+    @contextmanager
+    def slowed(self) -> Iterator[None]:
+        """Let all jobs compute for a fifth of the time.
+
+        So a run on a fast machine is not over before a test has disturbed it.
+        """
+        jobs, over = self.named(JOB), threading.Event()
+
+        def hold() -> None:
+            while not over.wait(0.02):
+                for job in jobs:
+                    with suppress(psutil.NoSuchProcess):
+                        job.suspend()
+                over.wait(0.08)
+                for job in jobs:
+                    with suppress(psutil.NoSuchProcess):
+                        job.resume()
+
+        thread = threading.Thread(target=hold)
+        thread.start()
+        try:
+            yield
+        finally:
+            over.set()
+            thread.join()
 
     def named(self, module: str) -> list[psutil.Process]:
         """Living processes that run a Python module or a program."""
@@ -231,12 +264,16 @@ def running(folder: Path, environment: dict[str, str]) -> Iterator[Installation]
         product.close()
 
 
-JOB, SUPERVISOR = "worker.job_process", "worker.supervisor"
-
-
 def kill_job(product: Installation, run: str) -> None:
     """Kill the process that computes, as the kernel does when memory runs out."""
     product.signal(JOB, signal.SIGKILL)
+
+
+def kill_job_of(product: Installation, run: str) -> None:
+    """Kill the process that computes this run alone."""
+    with product.slowed():
+        for child in product.owner(run).children():
+            child.kill()
 
 
 def kill_worker(product: Installation, run: str) -> None:

@@ -38,12 +38,12 @@ class Drill(NamedTuple):
     """Number of specs among them; runs of one end alike."""
     generations: int
     outage: float
-    """Seconds without the database, and of errors of the store."""
+    """Seconds without the database, more than a lease, and of errors of the store."""
     patience: float
     """Seconds within which all of them finish after the bad night."""
 
 
-SMALL = Drill(4, 10, 4, 1, 12, outage=2.0, patience=300.0)
+SMALL = Drill(4, 10, 4, 1, 12, outage=5.0, patience=300.0)
 FULL = Drill(20, 500, 40, 4, 40, outage=60.0, patience=3600.0)
 
 
@@ -56,12 +56,12 @@ class Hosts:
     """The workers of an installation, each as if it had a machine of its own."""
 
     def __init__(self, product: Installation):
-        (server,) = product.named("server.main")
+        (server,) = product.named("microcosmos_server.main")
         self.environment = server.environ() | {"WORKERS": "1"}
         self.processes: list[subprocess.Popen[bytes]] = []
 
     def start(self, **settings: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "worker.supervisor"]
+        command = [sys.executable, "-m", "microcosmos_worker.supervisor"]
         environment = self.environment | settings
         log = Path(environment["MICROCOSMOS_DATA"]) / f"host-{len(self.processes)}.log"
         with log.open("ab") as output:
@@ -123,13 +123,32 @@ def no_store(product: Installation) -> Iterator[None]:
 
 
 def flush(product: Installation) -> None:
-    (server,) = product.named("server.main")
+    (server,) = product.named("microcosmos_server.main")
     with redis.Redis.from_url(server.environ()["MICROCOSMOS_REDIS_URL"]) as client:
         client.flushdb()
 
 
-def disturb(product: Installation, hosts: Hosts, size: Drill) -> None:
-    """Do everything that goes wrong in a bad night, one thing after another."""
+@contextmanager
+def frozen_redis(product: Installation) -> Iterator[bool]:
+    """Freeze the Redis of the installation; yield False if it has none of its own."""
+    found = product.named("redis-server") + product.named("valkey-server")
+    for one in found:
+        one.suspend()
+    try:
+        yield bool(found)
+    finally:
+        for one in found:
+            one.resume()
+
+
+def silences(product: Installation, runs: list[str]) -> int:
+    """Count the attempts that ended because their worker did not report."""
+    logs = [product.get(f"runs/{run}/log")["entries"] for run in runs]
+    return sum("has not reported for" in one["text"] for log in logs for one in log)
+
+
+def disturb(product: Installation, hosts: Hosts, size: Drill, runs: list[str]) -> Iterator[str]:
+    """Do everything that goes wrong in a bad night, and yield what should not follow."""
     kill_job(product, "")
     say("jobs killed")
     hosts.alive[0].kill()
@@ -142,9 +161,31 @@ def disturb(product: Installation, hosts: Hosts, size: Drill) -> None:
     with no_store(product):
         time.sleep(size.outage)
     say(f"{size.outage:g} s without the store")
+    before = silences(product, runs)
     with no_database(product):
         time.sleep(size.outage)
     say(f"{size.outage:g} s without the database")
+    time.sleep(HEARTBEATS)
+    if after := silences(product, runs) - before:
+        yield f"the database was away, and {after} attempts failed for it"
+    with frozen_redis(product) as own:
+        began = time.monotonic()
+        for number in range(10):
+            changed = product.http.patch(f"/api/v1/runs/{runs[0]}", json={"note": f"{number}"})
+            changed.raise_for_status()
+        seconds = time.monotonic() - began
+    if not own:
+        rich.print("  NOT SHOWN: a frozen Redis: it is not the installation's own")
+        return
+    say(f"Redis frozen: 10 changes in {seconds:.2f} s")
+    if seconds > FROZEN_SECONDS:
+        yield f"10 changes took {seconds:.1f} s while Redis was frozen"
+
+
+HEARTBEATS = 3.0
+"""Seconds in which the reconciler takes several passes after an outage."""
+FROZEN_SECONDS = 10.0
+"""Most seconds for ten changes while Redis is frozen, on a busy machine."""
 
 
 def say(what: str) -> None:
@@ -191,11 +232,12 @@ def drill(product: Installation, size: Drill, told: Receiver) -> list[str]:
         for _ in range(size.hosts - 4):
             hosts.start()
         wait_until(lambda: is_under_way(product), 300, "runs are computed", every=0.3)
-        disturb(product, hosts, size)
+        wrong = list(disturb(product, hosts, size, [run for run, _ in runs]))
         wait_finished(product, [run for run, _ in runs], size.patience)
         if not FAKETIME:
             rich.print("  NOT SHOWN: a host with a wrong clock: no libfaketime on this machine")
         return [
+            *wrong,
             *record.faults(product, runs, expected),
             *record.left(product, size.queued - size.finishing),
             *record.told(product, [run for run, _ in runs], told),

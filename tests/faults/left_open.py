@@ -39,7 +39,7 @@ SPEC = {
     "experiment": "quality-diversity",
     "seed": 7,
     "world": {"width": 64, "height": 64},
-    "task": {"steps": 300},
+    "task": {"steps": 400},
     "archive": {
         "descriptors": [
             {"name": name, "low": 1e-4, "high": 100.0, "bins": 32, "scale": "log10"}

@@ -19,23 +19,21 @@ TINY = {
     "task": {"steps": 150},
     "search": {"generations": 3, "batch": 8},
 }
-EMULATOR = "qemu-x86_64"
-OLDER = "SandyBridge"
-"""It knows AVX, and neither AVX2 nor fused multiply-adds."""
+EMULATED = ["qemu-x86_64", "-cpu", "SandyBridge"]
+"""Runs a command on a processor that knows AVX, and neither AVX2 nor fused multiply-adds."""
 
 
 def processors(product: Installation) -> bool:
     """Tell whether the processor's model changes nothing; emulation takes minutes."""
-    emulator = shutil.which(EMULATOR)
-    if emulator is None:
-        rich.print(f"NOT SHOWN: there is no {EMULATOR} (Debian's qemu-user)")
+    if shutil.which(EMULATED[0]) is None:
+        rich.print(f"NOT SHOWN: there is no {EMULATED[0]} (Debian's qemu-user)")
         return False
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         here = evolve(folder, "here", [])
-        there = evolve(folder, "there", [emulator, "-cpu", OLDER])
+        there = evolve(folder, "there", EMULATED)
     same = here == there
-    rich.print(f"{OLDER}: {len(here)} bytes {'identical' if same else 'DIFFERENT'}")
+    rich.print(f"{EMULATED[-1]}: {len(here)} bytes {'identical' if same else 'DIFFERENT'}")
     return same
 
 

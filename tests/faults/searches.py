@@ -48,6 +48,8 @@ FIGURES = {
     "coverage": "coverage",
     "qd_score": "QD score",
 }
+FITTEST = 10
+"""Elites of each seed whose gaits are examined."""
 PURE = 0.9
 """Least share of a gait's power in one harmonic for a sinusoidal gait."""
 
@@ -105,11 +107,12 @@ def compare(product: Installation, runs: dict[str, list[dict]]) -> bool:
         )
     draw(found)
     for method, some in runs.items():
-        purities = [purity(file) for run in some for file in fittest(product, run["id"], 10)]
+        files = [file for run in some for file in fittest(product, run["id"], FITTEST)]
+        purities = [purity(file) for file in files]
         rich.print(
-            f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the ten fittest of each "
-            f"seed are sinusoidal (median {statistics.median(purities):.0%} of the power in "
-            "one harmonic)"
+            f"{method}: {np.mean(np.array(purities) >= PURE):.0%} of the {FITTEST} fittest of "
+            f"each seed are sinusoidal (median {statistics.median(purities):.0%} of the power "
+            "in one harmonic)"
         )
     return good
 
@@ -184,10 +187,15 @@ def purity(file: dict) -> float:
     scene = creature.scene_of(creature.parse(file))
     task = build_task(scene, room=creature.room(file))
     actuator = jax.tree.map(jnp.asarray, actuator_of(file, scene))
-    driven = search.drive(task, actuator)
-    angle = np.asarray(driven.inputs.angle, float)
+
+    def commanded(actuator: Any) -> tuple[jax.Array, jax.Array | None]:
+        driven = search.drive(task, actuator)
+        return driven.inputs.angle, driven.clock
+
+    angles, clock = jax.jit(commanded)(actuator)
+    angle = np.asarray(angles, float)
     # At equal times of the controller's clock, which slows where the body would be too fast.
-    phase = np.arange(len(angle)) if driven.clock is None else np.asarray(driven.clock, float)
+    phase = np.arange(len(angle)) if clock is None else np.asarray(clock, float)
     last = phase[-1] // scene.control.period * scene.control.period
     at = last - scene.control.period * np.arange(1, 65) / 64
     angle = np.stack([np.interp(at, phase, one) for one in angle.T], 1)

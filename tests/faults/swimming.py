@@ -30,6 +30,8 @@ from microcosmos.spec.quality_diversity import PRESETS
 from microcosmos.viz.replay import actuator_of
 from microcosmos.world import Measures, State
 
+EXAMINED = ("demo", "standard")
+"""Presets."""
 ELITES = {"fittest": 5, "others": 5}
 """Elites of each seed that are examined."""
 BARS = {
@@ -55,7 +57,7 @@ WAVES = {
 
 def swimming(product: Installation) -> bool:
     """Tell whether the elites of `demo` and `standard` truly swim, and fast."""
-    return all([examine(product, name) for name in ("demo", "standard")])
+    return all([examine(product, name) for name in EXAMINED])
 
 
 def examine(product: Installation, preset: str) -> bool:
@@ -205,7 +207,10 @@ def wave_speeds(scene: Scene) -> dict[tuple[float, ...], float]:
 
     def one(point: jax.Array) -> jax.Array:
         driven = travelling(scene, task, point)
-        values = search.motion_of(task, driven, *search.simulate(driven))
+        end, observed = search.simulate(driven)
+        values = search.motion_of(task, driven, end, observed)
+        shown = search.poses_of(task, driven, observed)
+        values["crossing"] = search.crossing(shown, driven.start.positions)
         return jnp.stack([values[name] for name in names])
 
     grid = list(combinations(*WAVES.values()))

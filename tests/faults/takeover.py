@@ -6,7 +6,8 @@ from datetime import datetime
 
 import rich
 from drive import SHORT, Installation, kill_job, running
-from group import Hosts, load, spec
+from group import Hosts, spec
+from record import load
 
 TIMES = 5
 SETTINGS = {

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.long
 def maintain(product: Installation, folder: Path, *words: str) -> str:
     inherited = {name: value for name, value in os.environ.items() if name not in SERVICES}
     settings = product.environment | {"MICROCOSMOS_DATA": str(folder)}
-    command = [sys.executable, "-m", "server.maintenance", *words]
+    command = [sys.executable, "-m", "microcosmos_server.maintenance", *words]
     done = subprocess.run(
         command, cwd=ROOT, env=inherited | settings, capture_output=True, text=True
     )
@@ -23,11 +23,11 @@ def maintain(product: Installation, folder: Path, *words: str) -> str:
 
 
 def test_a_run_in_progress_ends_alike_in_both(product, spec, tmp_path):
-    search = spec["search"] | {"generations": 250}
-    run = product.submit(spec | {"search": search})
-    product.reach(run, 10)
-    maintain(product, product.folder, "backup", str(tmp_path / "backup"))
-    seen = product.read(run)
+    run = product.submit(spec | {"search": spec["search"] | {"generations": 100}})
+    product.reach(run, 3)
+    with product.slowed():
+        maintain(product, product.folder, "backup", str(tmp_path / "backup"))
+        seen = product.read(run)
     assert seen["status"] == "running"
     said = maintain(product, tmp_path / "data", "restore", str(tmp_path / "backup"))
     assert "is restored" in said

@@ -32,14 +32,13 @@ SMALL = {
 
 @pytest.fixture
 def start_plugin_worker(tmp_path):
-    """Starts a second worker of an installation, with the example and a broken module."""
+    """Starts a second worker of an installation, with the example."""
     hired = []
-    module, broken = shutil.copy(EXAMPLE, tmp_path), tmp_path / "broken.py"
-    broken.write_text("import os\nos.nothing\n")
+    module = shutil.copy(EXAMPLE, tmp_path)
 
     def start(product):
-        (other,) = product.named(SUPERVISOR)
-        environment = other.environ() | {"MICROCOSMOS_MODULES": f"{module}:{broken}"}
+        other, *_ = product.named(SUPERVISOR)
+        environment = other.environ() | {"MICROCOSMOS_MODULES": str(module)}
         command = [sys.executable, "-m", SUPERVISOR, "0"]
         with (product.folder / "hired.txt").open("ab") as output:
             streams = {"stdout": output, "stderr": output}
@@ -56,24 +55,15 @@ def worker_with_plugins(product):
     return next((one for one in product.get("workers") if one["plugins"]), None)
 
 
-def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(
-    start_product, start_plugin_worker, tmp_path
-):
-    product = start_product(WORKERS="1")
-    wait_until(lambda: product.get("workers"), 60, "its worker lives")
+def test_a_plug_in_task_is_refused_and_evolved(product, start_plugin_worker):
+    wait_until(lambda: product.get("workers"), 60, "its workers live")
     refused = product.http.post("/api/v1/runs", json=SMALL)
     assert refused.status_code == 422
-    messages = {one["field"]: one["message"] for one in refused.json()["errors"]}
+    messages = {one["field"]: one["reason"] for one in refused.json()["errors"]}
     assert "no worker has 'plugin_task.straight'" in messages["task.fitness"]
-    assert "docs/plugins.md" in messages["body.builder"]
-
     worker = start_plugin_worker(product)
     names = [f"plugin_task.{name}" for name in ("straight", "sway", "cross")]
     assert {one["name"] for one in worker["plugins"]} == set(names)
-    (failed,) = worker["unloaded"]
-    assert failed["module"].endswith("broken.py")
-    assert "AttributeError" in failed["reason"]
-
     run = product.submit(SMALL)
     done = product.wait(run, "finished", seconds=240)
     log = product.get(f"runs/{run}/log")["entries"]
@@ -87,20 +77,3 @@ def test_a_plug_in_task_is_refused_evolved_and_queued_by_version(
     archive = product.get(f"runs/{run}/archive", measures="plugin_task.straight")
     assert archive["measures"]["plugin_task.straight"] == archive["fitness"]
     assert archive["fitness"] == tree["archive"]["fitness"].tolist()
-
-    module = tmp_path / EXAMPLE.name
-    module.write_text(f"{EXAMPLE.read_text()}# Changed.\n")
-    wait_until(
-        lambda: worker_with_plugins(product)["plugins"] != worker["plugins"],
-        60,
-        "the worker notices the changed module",
-    )
-    again = product.submit(spec)
-    waiting = product.read(again)
-    assert waiting["status"] == "queued"
-    assert "Waits for a worker that has plugin_task.cross" in waiting["waiting_reason"]
-    assert f"{worker['name']} has another version" in waiting["waiting_reason"]
-    shutil.copy(EXAMPLE, module)
-    finished = product.wait(again, "finished", seconds=240)
-    assert finished["attempt"] == 1
-    assert product.archive(again) == product.archive(run)

@@ -14,9 +14,10 @@ def test_a_run_in_s3_survives_an_outage_of_the_store(start_product, spec, undist
         run = product.submit(spec)
         product.reach(run, 10)
         archive = f"/api/v1/runs/{run}/archive.h5"
-        wait_until(lambda: product.http.get(archive).status_code == 200, 60, "it is saved")
-        store.failing = "/runs/"  # A worker takes the run, and cannot read its checkpoint.
-        kill_job(product, run)
+        with product.slowed():
+            wait_until(lambda: product.http.get(archive).status_code == 200, 60, "it is saved")
+            store.failing = "/runs/"  # A worker takes the run, and cannot read its checkpoint.
+            kill_job(product, run)
         wait_until(lambda: product.read(run)["attempt"] == 2, 60, "it is claimed again")
         failed = store.failed
         wait_until(lambda: store.failed > failed + 3, 60, "reading fails")

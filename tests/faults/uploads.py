@@ -20,7 +20,10 @@ from malformed import Case
 
 IN_ACCESS, IN_OPEN = 0x1, 0x20
 EVENT = struct.Struct("iIII")
-MEASURED = (["-m", "server.main"], ["-m", "server.creatures.sandbox_process"])
+MEASURED = (
+    ["-m", "microcosmos_server.main"],
+    ["-m", "microcosmos_server.creatures.sandbox_process"],
+)
 INTERNAL_WORDS = ("Errno", "No module", "took too long", "cannot be read", "Traceback")
 """Words of internal errors, which a refusal must not contain."""
 

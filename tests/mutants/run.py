@@ -2,9 +2,9 @@
 
 `make mutants` tries all, `make mutants NAMES="auth gradient-wrap"` those with these prefixes.
 Each mutant is a file beside this one: the source file, a text that occurs there exactly once,
-its replacement, and the tests of `make test` that have to fail (the package's folder, or a file
-of it if the folder takes more than a minute). These tests must pass without the defect. Mutants
-change a copy of the repository only.
+its replacement, and the tests that have to fail: those of a folder that `make test` runs, or
+all of some files. These tests must pass without the defect. Mutants change a copy of the
+repository only.
 """
 
 import os
@@ -69,17 +69,22 @@ def failure(page: bool, tests: Iterable[str], copy: Path) -> str | None:
         command, folder = ["npx", "vitest", "run", "--bail", "1", *tests], copy / "web"
     else:
         pytest = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider"]
-        command, folder = [*pytest, "-m", "not long", *tests], copy
+        quick = [] if all(path.endswith(".py") for path in tests) else ["-m", "not long"]
+        command, folder = [*pytest, *quick, *tests], copy
     # The copy's own packages go before those that are installed.
     path = os.pathsep.join([str(copy / ".venv" / "bin"), os.environ["PATH"]])
-    here = {"PYTHONPATH": f"{copy}:{copy / 'engine'}", "PATH": path, "NO_COLOR": "1"}
+    here = {
+        "PYTHONPATH": f"{copy / 'server'}:{copy / 'worker'}:{copy / 'engine'}",
+        "PATH": path,
+        "NO_COLOR": "1",
+    }
     env = os.environ | here
     done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True)
     # Pytest ends with 1 if a test failed; 2 and more mean that it could not run them.
     if done.returncode not in (0, 1):
         raise RuntimeError(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
     lines = (done.stdout + done.stderr).splitlines()
-    failed = (line for line in lines if line.lstrip().startswith("FAIL"))
+    failed = (line for line in lines if line.lstrip().startswith(("FAIL", "ERROR")))
     return next(failed, "an error").strip()[:150] if done.returncode == 1 else None
 
 
@@ -94,14 +99,23 @@ def caught_by(mutant: Mutant, copy: Path) -> str | None:
         file.write_text(source)
 
 
+def apart(chosen: Iterable[Mutant]) -> list[list[str]]:
+    """Return the tests of mutants in groups: files and folders apart, since only of files the
+    long tests run, and those of the engine, since after JAX no process may fork."""
+    found: dict[tuple[str, bool], list[str]] = {}
+    for path in sorted({path for one in chosen for path in one.tests}):
+        place = "engine" if path.startswith("tests/engine") else path.partition("/")[0]
+        found.setdefault((place, path.endswith(".py")), []).append(path)
+    return list(found.values())
+
+
 def main(prefixes: list[str]) -> int:
     chosen = [one for one in mutants() if one.name.startswith(tuple(prefixes or [""]))]
     missed = 0
     with tempfile.TemporaryDirectory() as folder:
         copy_repository(Path(folder))
-        for page in (False, True):
-            tests = {path for one in chosen if one.of_page == page for path in one.tests}
-            if tests and (failed := failure(page, sorted(tests), Path(folder))):
+        for tests in apart(chosen):
+            if failed := failure(tests[0].startswith("src/"), tests, Path(folder)):
                 sys.exit(f"Tests fail without a defect, so they prove nothing: {failed}")
         for mutant in chosen:
             start = time.monotonic()

@@ -17,17 +17,19 @@ from databases import Missing, own_postgresql, own_redis
 from installation import Installation, empty_redis, running
 from object_store import CREDENTIALS, Proxy, own_object_store
 from queueing import alive, reason, taken, waiting  # noqa: F401  (fixtures)
-from sqlalchemy import event, func, select, update
+from real_server import started
+from sqlalchemy import Connection, event, func, select, update
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, parse
-from server.attempts.attempt import Attempt
-from server.attempts.claim import claim
-from server.core.database import ago
-from server.runs.submission import submit
-from server.services.services import Services
-from server.settings import Settings
-from server.tables import Base, Run
+from microcosmos_server.attempts.attempt import Attempt
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.core.database import ago
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.services import messages
+from microcosmos_server.services.services import Services
+from microcosmos_server.settings import Settings
+from microcosmos_server.tables import Base, InstallationState, Run
 
 # A busy machine answers late; httpx gives up after 5 seconds unless told otherwise.
 PATIENCE = inspect.signature(httpx.get).parameters["timeout"].default
@@ -36,7 +38,7 @@ PATIENCE.read = PATIENCE.connect = 30.0
 
 @pytest.fixture(params=["sqlite", "postgresql"])
 def database(request) -> str:
-    """The database of a test: `make test` runs it on SQLite alone, unless it is marked."""
+    """The database of a test: SQLite alone, unless it is marked or its file is repeated."""
     return request.param
 
 
@@ -132,13 +134,32 @@ def eventually() -> Callable[[Callable[[], Any]], None]:
 
 @pytest.fixture
 def serve(services) -> Callable[[], Any]:
-    """Starts servers over the same database and Redis, one after another."""
+    """Starts servers over the same database and Redis, which end with their test."""
     return lambda **changes: running(services.settings.model_copy(update=changes))
 
 
 @pytest.fixture
+def start_server(services, tmp_path) -> Callable[..., Any]:
+    """Starts a process that serves the same database and Redis, with settings of its own."""
+    settings = services.settings
+    same = {
+        "MICROCOSMOS_DATA": str(tmp_path),
+        "MICROCOSMOS_DATABASE_URL": settings.database_url,
+        "MICROCOSMOS_REDIS_URL": settings.redis_url,
+        "MICROCOSMOS_REDIS_PREFIX": settings.redis_prefix,
+    }
+    return lambda **more: started(**same | more)
+
+
+@pytest.fixture
+def served(installation) -> Callable[..., str]:
+    """Returns the address of a server with other settings, which all tests share."""
+    return installation.served
+
+
+@pytest.fixture
 def address(installation) -> str:
-    return installation.address
+    return installation.served()
 
 
 @pytest.fixture
@@ -191,6 +212,24 @@ def update_rows(services) -> Callable[..., None]:
 
 
 @pytest.fixture
+def read_only(services) -> Iterator[Callable[[int], None]]:
+    """Lets PostgreSQL refuse to write in the next transactions, as after a failover."""
+    engine, left = services.sessions.engine, []
+
+    def refuse(transactions: int) -> None:
+        left.extend(range(transactions))
+
+    def begin(connection: Connection) -> None:
+        if left:
+            left.pop()
+            connection.exec_driver_sql("SET TRANSACTION READ ONLY")
+
+    event.listen(engine, "begin", begin)
+    yield refuse
+    event.remove(engine, "begin", begin)
+
+
+@pytest.fixture
 def silence(services, update_rows) -> Callable[[], None]:
     """Lets the leases of all runs expire."""
 
@@ -198,6 +237,7 @@ def silence(services, update_rows) -> Callable[[], None]:
         with services.sessions.read() as session:
             then = ago(session, services.settings.lease + 0.1)
         update_rows(Run, heartbeat_at=then)
+        update_rows(InstallationState, reachable_since=None)  # There was no outage.
 
     return silence
 
@@ -243,6 +283,7 @@ def published(services) -> Callable[[], list[tuple[str, Any]]]:
     """Reads all published events, as pairs of kind and data."""
 
     def read() -> list[tuple[str, Any]]:
+        messages.flush()
         entries = services.redis.xrange(services.events.stream)
         return [(e[b"event"].decode(), json.loads(e[b"data"])) for _, e in entries]
 

@@ -1,16 +1,15 @@
 """The files in deploy/ fit the code: modules, settings and times exist, and they parse."""
 
 import importlib.util
-import os
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from setting_names import setting_names
 
-from server.settings import Settings
-from worker.supervisor import STOP_SECONDS
+from microcosmos_server.settings import Settings
+from microcosmos_worker.supervisor import STOP_SECONDS
 
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
@@ -22,29 +21,6 @@ ENVIRONMENT = "MICROCOSMOS_ENV"
 """A variable of the SLURM script alone: the file with the settings."""
 
 
-def settings():
-    names = {f"MICROCOSMOS_{name.upper()}" for name in Settings.model_fields}
-    for field in Settings.model_fields.values():
-        names |= set(getattr(field.validation_alias, "choices", ()))
-    return names
-
-
-@pytest.mark.parametrize("unit", UNITS, ids=lambda path: path.name)
-def test_systemd_accepts_the_units(unit, tmp_path):
-    if shutil.which("systemd-analyze") is None:
-        pytest.skip("no systemd-analyze on this machine")
-    text = unit.read_text().replace("/srv/microcosmos", str(ROOT))
-    name = unit.name.replace("@", "@renderer" if "renderer" in unit.name else "@0")
-    (tmp_path / name).write_text(text)
-    done = subprocess.run(
-        ["systemd-analyze", "verify", "--man=no", str(tmp_path / name)],
-        capture_output=True,
-        text=True,
-        env=os.environ | {"SYSTEMD_LOG_LEVEL": "warning"},
-    )
-    assert (done.returncode, [x for x in done.stderr.splitlines() if name in x]) == (0, [])
-
-
 @pytest.mark.parametrize("unit", UNITS, ids=lambda path: path.name)
 def test_units_start_modules_that_exist_and_leave_them_time(unit):
     text = unit.read_text()
@@ -52,12 +28,12 @@ def test_units_start_modules_that_exist_and_leave_them_time(unit):
     assert importlib.util.find_spec(module)
     (seconds,) = re.findall(r"^TimeoutStopSec=(\d+)", text, re.MULTILINE)
     assert int(seconds) > STOP_SECONDS
-    if module != "server.main":
-        assert "KillMode=mixed" in text or module == "worker.renderer"
+    if module != "microcosmos_server.main":
+        assert "KillMode=mixed" in text or module == "microcosmos_worker.renderer"
 
 
 def test_all_variables_are_settings():
-    known = settings() | OTHERS | {ENVIRONMENT}
+    known = setting_names() | OTHERS | {ENVIRONMENT}
     for file in (*UNITS, SLURM, DEPLOY / "microcosmos.env"):
         text = file.read_text()
         used = set(re.findall(r"\b(?:MICROCOSMOS|JAX|AWS)_[A-Z_]+\b", text))
@@ -74,7 +50,7 @@ def test_bash_accepts_the_slurm_script_and_the_signal_reaches_the_worker():
     first = next(n for n, line in enumerate(text.splitlines()) if line[:1] not in ("#", ""))
     assert max(options) < first, "SLURM reads no option after the first command"
     assert re.fullmatch(
-        r"exec \.venv/bin/python -m worker\.supervisor 0", text.splitlines()[-1]
+        r"exec \.venv/bin/python -m microcosmos_worker\.supervisor 0", text.splitlines()[-1]
     )
 
 

@@ -20,18 +20,19 @@ from schemathesis.specs.openapi.checks import (
     response_schema_conformance,
     status_code_conformance,
 )
+from setting_names import names_of
 
 from microcosmos.archive import creature
 from microcosmos.spec import EXPERIMENTS, estimate
-from server.app import create_app
-from server.attempts.claim import claim
-from server.auth import tokens
-from server.creatures import storage as creatures
-from server.renderings import storage as renderings
-from server.settings import Settings
-from server.tables import REPLAY
-from worker.device import DEFAULT_FRACTION
-from worker.supervisor import STOP_SECONDS
+from microcosmos_server.app import create_app
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.auth import tokens
+from microcosmos_server.creatures import storage as creatures
+from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.settings import Settings
+from microcosmos_server.tables import REPLAY
+from microcosmos_worker.device import DEFAULT_FRACTION
+from microcosmos_worker.supervisor import STOP_SECONDS
 
 EXAMPLES = int(os.environ.get("EXAMPLES", "4"))
 """Requests to each operation, right ones and wrong ones; `EXAMPLES=500` looks longer."""
@@ -64,9 +65,10 @@ def known(
     kept = creature.document(identity(3), None, None)
     with services.sessions.write.begin() as session:
         creatures.import_files(session, kept)
-    renderings.save(
-        services, kept["sha256"], REPLAY, replay(np.array([[[0.0, 0.0], [1.0, 0.0]]]))
-    )
+    planes = {"velocity": {"scale": 1.0}, "energy": {"scale": 1.0, "frames": 0}}
+    positions = np.array([[[0.0, 0.0], [1.0, 0.0]]])
+    still = replay(positions, 3, joints=[], **planes)
+    renderings.save(services, kept["sha256"], REPLAY, still)
     token = tokens.create(services, "somebody", "read").token
     return {
         "run_id": [str(run_id), str(sweep_id)],
@@ -75,14 +77,37 @@ def known(
     }
 
 
+def test_generated_clients_know_a_type_of_every_answer(services):
+    """Generators know JSON, text and plain bytes, and need a schema."""
+    document = create_app(services).openapi()
+    answers = {
+        (path, method): answer["responses"]["200"].get("content", {})
+        for path, operations in document["paths"].items()
+        for method, answer in operations.items()
+        if "200" in answer["responses"]
+    }
+    unknown = [
+        place
+        for place, content in answers.items()
+        if content
+        and not any(
+            "schema" in how or "itemSchema" in how
+            for kind, how in content.items()
+            if kind in ("application/json", "application/octet-stream")
+            or kind.startswith("text/")
+        )
+    ]
+    assert len(answers) > 50
+    assert unknown == []
+
+
 @pytest.mark.parametrize("database", ["sqlite"])
-def test_no_request_breaks_the_server_or_its_document(serve, services, known):
+def test_no_request_breaks_the_server_or_its_document(address, services, known):
     schema = schemathesis.openapi.from_dict(create_app(services).openapi())
     wrong: list[str] = []
     reached: set[str] = set()
-    with serve() as address:
-        for found in schema.exclude(path=STREAMS).get_all_operations():
-            wrong += broken(found.ok(), address, known, reached)
+    for found in schema.exclude(path=STREAMS).get_all_operations():
+        wrong += broken(found.ok(), address, known, reached)
     assert wrong == []
     assert len(reached) > 30  # Most were answered with what they are there for.
 
@@ -128,18 +153,12 @@ def rows(heading):
     return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
 
 
-def names(field, info):
-    return set(getattr(info.validation_alias, "choices", ())) or {
-        f"MICROCOSMOS_{field.upper()}"
-    }
-
-
 def test_every_setting_is_there_with_its_default_and_no_other():
     documented = {
         name: row[1] for row in rows("Settings") for name in re.findall(r"`(\w+)`", row[0])
     }
     fields = Settings.model_fields
-    known = {name: field for field, info in fields.items() for name in names(field, info)}
+    known = {name: field for field in fields for name in names_of(field)}
     assert documented.keys() == known.keys()
     for name, field in known.items():
         if field not in ELSEWHERE:

@@ -56,7 +56,7 @@ def developed(plan: growth.Plan, capacity: growth.Capacity = CAPACITY) -> tuple[
     """Return a grown body, its skeleton, and its form."""
     grown = growth.grow(plan, capacity, jnp, loop)
     bones = growth.skeleton(grown, capacity, jnp, loop)
-    given = grown.positions, bones.edges, grown.present, bones.there
+    given = grown.positions, bones.edges, grown.present, bones.edge_present
     return grown, bones, growth.form(*given, jnp)
 
 
@@ -79,8 +79,8 @@ def in_numpy(
 
 def graph(grown: growth.Grown, bones: growth.Skeleton) -> bodies.Body:
     """Return the present nodes, edges and joints as a body of any other builder."""
-    node, edge = np.cumsum(grown.present) - 1, np.cumsum(bones.there) - 1
-    edges = node[bones.edges[bones.there]]
+    node, edge = np.cumsum(grown.present) - 1, np.cumsum(bones.edge_present) - 1
+    edges = node[bones.edges[bones.edge_present]]
     joints = edge[bones.joints[bones.bends]]
     positions = grown.positions[grown.present].astype(float)
     x, y = (positions[edges[:, 1]] - positions[edges[:, 0]]).T

@@ -9,7 +9,7 @@ from uuid import uuid4
 import psycopg
 import redis
 
-from server.local.redis_embedded import prepare
+from microcosmos_server.local.redis_embedded import prepare
 
 POSTGRES = os.environ.get("MICROCOSMOS_TEST_POSTGRESQL", "postgresql://127.0.0.1:5432")
 REDIS = os.environ.get("MICROCOSMOS_TEST_REDIS", "redis://127.0.0.1:6379")

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from microcosmos.plugins import Axis, Declaration
+from microcosmos.plugins import Axis, Declaration, Emits
 
 A, B = "a" * 64, "b" * 64
 
@@ -40,6 +40,10 @@ def declared(source: str = A) -> list[dict[str, Any]]:
         Declaration(
             kind="encoding", name="mine.pulse", source=source, title="A pulse",
             sizes={"genes": 2, "per_joint": 1, "per_edge": 0},
+        ),
+        Declaration(
+            kind="emitter", name="mine.creep", source=source, title="Creeping", **strict,
+            emits=Emits(varies=("numbers",), learns="offspring"),
         ),
     )  # fmt: skip
     return [one.model_dump(mode="json") for one in found]

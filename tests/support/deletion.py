@@ -5,20 +5,22 @@ from pathlib import Path
 from sqlalchemy import func, select, update
 
 from microcosmos.spec import parse
-from server.attempts.claim import claim
-from server.maintenance.reconcile import reconcile
-from server.runs.submission import IdempotentRequest, submit
-from server.storage.mark import MARK
-from server.tables import Base, DeviceUse, Run, Total
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.maintenance.reconcile import reconcile
+from microcosmos_server.runs.submission import IdempotentRequest, submit
+from microcosmos_server.storage.mark import MARK
+from microcosmos_server.tables import Base, DeviceUse, Idempotency, Notification, Run, Total
+
+LEFT = [table.__tablename__ for table in (DeviceUse, Total, Idempotency, Notification)]
 
 
 def row_counts(services):
-    """Count the rows of all tables, but for device time and totals, which a run leaves."""
+    """Count the rows of tables, but of those that a run leaves, and notices, which go soon."""
     with services.sessions.read() as session:
         return {
             table.name: session.scalar(select(func.count()).select_from(table))
             for table in Base.metadata.sorted_tables
-            if table.name not in (DeviceUse.__tablename__, Total.__tablename__)
+            if table.name not in LEFT
         }
 
 

@@ -61,7 +61,7 @@ def any_genotype(
         key = jax.random.key(int(rng.integers(2**31)))
         plan = jax.jit(lambda key: body_plans.mutated(key, 8, rates))(key)
         return genomes.BodyGraph(plan, any_network(scene.control, rng))
-    if isinstance(scene.control, spec.Control | spec.Grown):
+    if isinstance(scene.control, spec.Control):
         return any_network(scene.control, rng)
     genes = encoding.newcomer(key=jax.random.key(0)).values.shape
     scale = 0.1 if isinstance(scene.control, spec.Fold) else 1.0

@@ -9,8 +9,8 @@ from microcosmos import spec
 from microcosmos.archive import creature
 from microcosmos.bodies.growth import TYPES, Plan
 from microcosmos.build import build_encoding, identity_template
-from microcosmos.experiments.lineage import identity
 from microcosmos.genomes import BodyGraph
+from microcosmos.search.parts.records import identity
 
 ROOM = (16, 40)
 PLAN = {

@@ -5,36 +5,50 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from functools import cached_property
+from typing import Any
 
 import uvicorn
+from sqlalchemy import update
 
-from server.app import create_app
-from server.services.services import Services, connect
-from server.settings import Settings
-from server.storage import mark
-from server.tables import Base, InstallationState, migrations
+from microcosmos_server.app import create_app
+from microcosmos_server.services import messages
+from microcosmos_server.services.services import Services, connect
+from microcosmos_server.settings import Settings
+from microcosmos_server.storage import mark
+from microcosmos_server.tables import Base, InstallationState, migrations
 
 
 class Installation:
-    """An installation for all tests on one database; its server starts when one is needed."""
+    """An installation for all tests on one database; its servers start when they are needed."""
 
     def __init__(self, settings: Settings, stack: ExitStack):
         self.services = connect(settings)
         migrations.upgrade(self.services.sessions)
         mark.leave(self.services.sessions, self.services.artifacts)
         self._stack = stack
+        self._addresses: dict[tuple[tuple[str, Any], ...], str] = {}
         stack.callback(self.services.close)
 
-    @cached_property
-    def address(self) -> str:
-        return self._stack.enter_context(running(self.services.settings))
+    def served(self, **changes: Any) -> str:
+        """Return the address of a server with these changes of the settings.
+
+        It serves all tests: none of them may end it.
+        """
+        key = tuple(sorted(changes.items()))
+        if key not in self._addresses:
+            # The server without changes has the settings that tests see, and may patch.
+            same = self.services.settings
+            settings = same.model_copy(update=changes) if changes else same
+            self._addresses[key] = self._stack.enter_context(running(settings))
+        return self._addresses[key]
 
     def clean(self) -> None:
+        messages.flush()
         with self.services.sessions.write.begin() as session:
             for table in reversed(Base.metadata.sorted_tables):
                 if table.name != InstallationState.__tablename__:
                     session.execute(table.delete())
+            session.execute(update(InstallationState).values(keep_files_until=None))
         empty_redis(self.services)
         shutil.rmtree(self.services.settings.artifacts, ignore_errors=True)
         mark.leave(self.services.sessions, self.services.artifacts)

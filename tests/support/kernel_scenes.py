@@ -5,9 +5,20 @@ from functools import partial
 
 import jax
 import numpy as np
+from genotypes import any_genotype
 
-from microcosmos import bodies, coupling, fields, filaments, fluid, groups, world
-from microcosmos.build import build_rods
+from microcosmos import (
+    bodies,
+    coupling,
+    fields,
+    filaments,
+    fluid,
+    groups,
+    search,
+    spec,
+    world,
+)
+from microcosmos.build import build_rods, build_task
 from microcosmos.build.scene import build_layout
 from microcosmos.device import array
 
@@ -46,6 +57,27 @@ def scene(body, size=(48, 48), *, matched=False, limits=(0.1, 0.1), nu_c=None, *
     angle = body.rest_angle[None] + 0.1 * time * np.sin(2 * np.pi * (joint - time))
     length = body.rest_length[None] * (1 + 0.1 * time * np.sin(2 * np.pi * (edge - time)))
     return box, start, filaments.Rest(single(angle), single(length))
+
+
+def controlled(**control):
+    """World, start and controller of a creature."""
+    scene = spec.Scene.model_validate(
+        {
+            "world": {"width": 24, "height": 24, "energy": {}},
+            "body": {"nodes": 8},
+            "control": {"period": 20} | control,
+            "task": {"steps": 30},
+        }
+    )
+    task = build_task(scene)
+    genotype = any_genotype(scene, task.encoding, np.random.default_rng(0))
+
+    @jax.jit
+    def develop(genotype):
+        driven = search.drive(task, genotype, differentiable=True)
+        return driven.world, driven.start, driven.controller
+
+    return develop(genotype)
 
 
 def repelling(body, size=(48, 48), strength=4.0, gradient=fields.binomial, **options):
@@ -157,6 +189,7 @@ SCENES = {
         chain(), projection=coupling.force_free, theta_feedback=0.5, forcing_iterations=5
     ),
     "weak actuators": lambda: scene(chain(), nu_c=0.05),
+    "actuators without strength": lambda: scene(chain(), nu_c=0.0),
     "no fluid": lambda: scene(chain(), matched=True, fluid=False),
     "repulsion": lambda: repelling(chain(), matched=True),
     "repulsion across the edges of a small world": lambda: moved(
@@ -177,6 +210,7 @@ SCENES = {
     "energy that is taken and spreads": lambda: fed(
         chain(), (45, 51), matched=True, rate=0.1, diffusion=0.05
     ),
+    "energy that no node takes": lambda: fed(chain(), matched=True, rate=0.0),
     "energy for two layers": lambda: fed(chain(), matched=True, rate=0.1, layers=2),
     "energy without fluid": lambda: fed(chain(), rate=0.1, diffusion=0.05, fluid=False),
     "a uniform force": lambda: surrounded(scene(chain(), matched=True), "force"),
@@ -208,67 +242,6 @@ SCENES = {
     "a body that has grown": lambda: grown(chain(), 13),
     "a stiff body that has grown": lambda: grown(chain(), 13, matched=True),
 }
-
-
-def any_scene(rng):
-    """A world of random size, form and bodies."""
-    stiffness = dict.fromkeys(STIFF, 1.0)
-    if rng.random() < 0.4:
-        stiffness = {name: rng.uniform(0.3, 1.0) for name in STIFF}
-    spacing = rng.uniform(0.7, 1.6)
-    makers = (
-        lambda: bodies.chain(int(rng.integers(3, 24)), spacing, **stiffness),
-        lambda: bodies.ring(int(rng.integers(6, 24)), spacing, **stiffness),
-        lambda: bodies.star(
-            int(rng.integers(3, 6)), int(rng.integers(2, 7)), spacing, **stiffness
-        ),
-        lambda: bodies.tree(2, 2, 4, max(1.0, spacing), 0.9, **stiffness),
-    )
-    body = makers[rng.integers(len(makers))]()
-    if rng.random() < 0.3:
-        body = bodies.combined(
-            [bodies.placed(body, (x, 20.0), rng.uniform(0, 6)) for x in (20.0, 65.0)]
-        )
-    feedback = rng.choice([1.0, 1.0, 0.5, 0.0])
-    projections = [coupling.unprojected, coupling.force_free]
-    if feedback > 0:
-        projections.append(coupling.torque_free)
-    weak = rng.random() < 0.2
-    matched = set(stiffness.values()) == {1.0} and feedback == 1 and not weak
-    deltas = [coupling.PESKIN, coupling.PESKIN, coupling.ROMA, coupling.HAT]
-    given = scene(
-        body,
-        (int(rng.integers(64, 100)), int(rng.integers(64, 100))),
-        matched=matched and rng.random() < 0.8,
-        limits=(0.1, 0.1) if rng.random() < 0.8 else (0.02, 0.01),
-        nu_c=0.05 if weak else None,
-        projection=projections[rng.integers(len(projections))],
-        theta_feedback=float(feedback),
-        force_factor=float(rng.choice([1.0, 2.0])),
-        forcing_iterations=int(rng.integers(1, 6)),
-        constraint_iterations=int(rng.integers(1, 12)),
-        layers=int(rng.choice([1, 1, 2])),
-        kernel=deltas[rng.integers(len(deltas))],
-        magic=fluid.capped_magic if rng.random() < 0.8 else fluid.fixed_magic,
-    )
-    if rng.random() < 0.5:
-        given = anywhere(given, rng)
-    box, start, rest = given
-    if rng.random() < 0.3:
-        gradient = (fields.gaussian, fields.binomial)[rng.integers(2)]
-        box = replace(box, steric=fields.Steric(single(4), single(0.1), gradient))
-    return box, start, rest
-
-
-def anywhere(given, rng):
-    """A scene in random surroundings."""
-    box, start, rest = given
-    solid = array(rng.random(box.size) < rng.choice([0.01, 0.3]))
-    strength = single(rng.uniform(0, 0.5, box.size) * (rng.random(box.size) < 0.1))
-    force, velocity = (single(rng.uniform(-s, s, 2)) for s in (5e-5, 0.05))
-    sponge = fluid.Sponge(strength, velocity)
-    parts = [one if rng.random() < 0.6 else None for one in (force, solid, sponge)]
-    return replace(box, surroundings=fluid.Surroundings(*parts)), start, rest
 
 
 def run(rollout, scene, steps=100):

@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from microcosmos.archive import file, poses
-from microcosmos.spec.measures import MEASURES
+from microcosmos.measures import RECORDED
 
 AXES = [
     {"name": "bending_effort", "low": 1e-4, "high": 100.0, "bins": 4, "scale": "log10"},
@@ -33,7 +33,7 @@ def elites(kind, sizes, generations, lengths):
     found = {
         "cell": CELLS,
         "fitness": np.array([1.5, 2.5, np.pi], np.float32),
-        "measures": draw.random((3, len(MEASURES))).astype(np.float32),
+        "measures": draw.random((3, len(RECORDED))).astype(np.float32),
         "generation": np.array(generations, np.int32),
         "curiosity": np.ones(3, np.float32),
         "operator": np.array([0, 1, 1], np.int32),
@@ -78,7 +78,7 @@ def made(
         "experiment": "quality-diversity",
         "archive": described,
         "seed": 0,
-        "task": {"fitness": "speed", "steps": 100},
+        "task": {"fitness": "speed", "steps": 400},
         "world": {"width": 24, "height": 24},
         "body": {"nodes": 12},
         "search": {"generations": 3},
@@ -89,7 +89,7 @@ def made(
         "version": "0.1.0",
         "device": '["cpu"]',
         "spec": json.dumps(document),
-        "measures": json.dumps(list(MEASURES)),
+        "measures": json.dumps(list(RECORDED)),
         "operators": '["random", "neat"]',
     }
     return file.dump(tree, attributes)

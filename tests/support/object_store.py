@@ -12,7 +12,7 @@ from threading import Thread
 from urllib.parse import urlsplit
 from uuid import uuid4
 
-from server.local.redis_embedded import free_port
+from microcosmos_server.local.redis_embedded import free_port
 
 BUCKET = "microcosmos"
 CREDENTIALS = {

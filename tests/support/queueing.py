@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 from sqlalchemy import select
 
-from server.schedule.order import places
-from server.schedule.take import take
-from server.workers import registry
+from microcosmos_server.schedule.order import places
+from microcosmos_server.schedule.take import take
+from microcosmos_server.workers import registry
 
 
 @pytest.fixture

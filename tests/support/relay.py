@@ -20,6 +20,9 @@ class Relay:
         self.allowance: list[int] = []
         """Bytes of an answer after which a connection breaks, for one after another."""
         self.asked: list[bytes] = []
+        self.going = threading.Event()
+        """While it is clear, nothing is forwarded and nothing breaks, as by a frozen server."""
+        self.going.set()
         self.open: list[socket.socket] = []
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.url = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
@@ -31,8 +34,9 @@ class Relay:
                 client, _ = self.listener.accept()
                 server = socket.create_connection(self.to)
                 self.open += [client, server]
-                start(forward, client, server, ENDLESS, self.asked)
-                start(forward, server, client, (self.allowance or [ENDLESS]).pop(0), [])
+                start(forward, client, server, ENDLESS, self.asked, self.going)
+                allowance = (self.allowance or [ENDLESS]).pop(0)
+                start(forward, server, client, allowance, [], self.going)
 
     def cut(self) -> None:
         for each in self.open:
@@ -50,10 +54,15 @@ def start(work: Callable[..., None], *arguments: Any) -> None:
 
 
 def forward(
-    source: socket.socket, target: socket.socket, allowance: int, seen: list[bytes]
+    source: socket.socket,
+    target: socket.socket,
+    allowance: int,
+    seen: list[bytes],
+    going: threading.Event,
 ) -> None:
     with suppress(OSError):
         while allowance > 0 and (data := source.recv(65536)):
+            going.wait()
             seen.append(data)
             target.sendall(data[:allowance])
             allowance -= len(data)

@@ -24,7 +24,10 @@ OBSTACLES = [
 ]
 VORTICES = {"kind": "vortices", "speed": 0.02, "vortices": 4}
 POINTS = [[0, 0], [3, 0], [3, 3], [0, 3]]
-CROSS = {"nodes": [[0, 0], [1, 0], [2, 0.3], [1, 1], [1, 2]], "edges": [[0, 1], [1, 2], [1, 3]]}
+CROSS = {
+    "nodes": [[0, 0], [1, 0], [2, 0.3], [1, 1], [1, 2]],
+    "edges": [[0, 1], [1, 2], [1, 3], [3, 4]],
+}
 
 
 def scene(control: dict[str, Any], task: dict[str, Any] | None = None, **parts: Any) -> dict:
@@ -32,14 +35,6 @@ def scene(control: dict[str, Any], task: dict[str, Any] | None = None, **parts: 
     box = BOX | parts.pop("box", {})
     timed = control if "period" in control or "lengths" in control else control | {"period": 8}
     return {"world": box, "control": timed, "task": {"steps": 30} | (task or {}), **parts}
-
-
-def layered(activation: str) -> dict[str, Any]:
-    """A scene of a network with fixed layers."""
-    return scene(
-        {"encoding": "weights", "hidden": [4], "scale": 2.0, "activation": activation},
-        body={"nodes": 6},
-    )
 
 
 def gait(swimmer: str, **options: Any) -> dict[str, Any]:
@@ -107,7 +102,7 @@ CASES: dict[str, dict[str, Any]] = {
     "through obstacles, among vortices": scene(
         {},
         {"fitness": "through", "trials": 2},
-        box={"flow": VORTICES, "obstacles": OBSTACLES},
+        box={"width": 36, "height": 34, "flow": VORTICES, "obstacles": OBSTACLES},
         body={"nodes": 8},
     ),
     "in a shear": scene({}, box={"flow": {"kind": "shear"}}, body={"nodes": 8}),
@@ -125,28 +120,13 @@ CASES: dict[str, dict[str, Any]] = {
         body={"builder": "polyline", "points": POINTS, "closed": True},
         coupling={"nu_c": 0.1, "projection": "force"},
     ),
-    "layers": scene(
-        {"encoding": "weights", "hidden": [4, 3], "activation": "tanh"},
+    "a cross, held within limits": scene(
+        {},
         {"trials": 2},
         body={"builder": "graph", **CROSS},
         coupling={"max_displacement": 0.05, "max_force": 0.02},
     ),
-    "layers that sense": scene(
-        {"encoding": "weights", "hidden": [4], "sense_energy": True},
-        box={"energy": ENERGY},
-        body={"builder": "polyline", "points": POINTS},
-    ),
-    "a grown body": scene({"encoding": "cppn-body"}, body={"nodes": 9}),
-    "a grown body that senses": scene(
-        {
-            "encoding": "cppn-body",
-            "min_nodes": 3,
-            "sense_energy": True,
-            **dict.fromkeys(TRAITS),
-        },
-        box={"energy": CONSUMED},
-        body={"nodes": 7},
-    ),
+    "an open line": scene({}, body={"builder": "polyline", "points": POINTS}),
     "a body from a plan": scene(
         {"encoding": "body-graph", "softest": 0.2},
         body={"builder": "grown", "nodes": 14, "length": 9.0, "segments": 4, "rings": 2}
@@ -170,7 +150,6 @@ CASES: dict[str, dict[str, Any]] = {
     ),
     "a gait": gait("worm", ramp=0.5),
     "a gait of a plug-in": gait("movers.wriggler"),
-    **{f"layers of {name}": layered(name) for name in ("sin", "sigmoid", "relu", "gaussian")},
     **{f"the {name}": gait(name) for name in ("tadpole", "ray", "cilia", "jellyfish")},
 }
 """Documents of scenes. The plug-ins are those of `movers.py`."""

@@ -7,14 +7,14 @@ import reports
 from databases import own_redis
 from installation import Installation
 
-from server.runs.submission import submit
-from server.schedule.take import take
-from server.settings import Settings
-from server.tables import Run
-from worker.device import Device
-from worker.heartbeats import Heartbeats
-from worker.readiness import Readiness
-from worker.supervisor import Supervisor
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.schedule.take import take
+from microcosmos_server.settings import Settings
+from microcosmos_server.tables import Run
+from microcosmos_worker.device import Device
+from microcosmos_worker.heartbeats import Heartbeats
+from microcosmos_worker.readiness import Readiness
+from microcosmos_worker.supervisor import Supervisor
 
 
 @pytest.fixture(scope="session")

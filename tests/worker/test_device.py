@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import pynvml
 import pytest
 
-from worker import device, nvidia, usage
-from worker.device import Device, memory
-from worker.usage import Usage
+from microcosmos_worker import device, heartbeats, nvidia
+from microcosmos_worker.device import Device, memory
+from microcosmos_worker.heartbeats import Usage
 
 TWO = {
     "GPU-aaaa1111": ("NVIDIA H200", 143771 << 20),
@@ -186,7 +186,7 @@ def test_a_machine_without_processor_information_works(tmp_path, monkeypatch):
 def test_child_processes_keep_to_the_workers_threads():
     one = device.threads()[-1]
     program = (
-        "import subprocess, sys; from worker import device\n"
+        "import subprocess, sys; from microcosmos_worker import device\n"
         "device.pin([int(sys.argv[1])])\n"
         "ask = 'import os; print(*os.sched_getaffinity(0))'\n"
         "subprocess.run([sys.executable, '-c', ask], check=True)"
@@ -197,7 +197,7 @@ def test_child_processes_keep_to_the_workers_threads():
 
 
 def test_a_processor_reports_load_and_memory():
-    found = usage.usage(Device("cpu", memory(), {}))
+    found = heartbeats.usage(Device("cpu", memory(), {}))
     assert found.load is not None
     assert found.load == pytest.approx(os.getloadavg()[0] / os.cpu_count(), abs=0.5)
     assert found.memory_bytes is not None
@@ -211,8 +211,8 @@ def test_in_a_container_its_own_memory_is_reported(tmp_path, monkeypatch, curren
     (tmp_path / "memory.max").write_text("2000")
     (tmp_path / "memory.current").write_text(current)
     (tmp_path / "memory.stat").write_text("inactive_file 10\n")
-    monkeypatch.setattr(usage, "CGROUP", tmp_path)
-    found = usage.usage(Device("cpu", 1, {}))
+    monkeypatch.setattr(heartbeats, "CGROUP", tmp_path)
+    found = heartbeats.usage(Device("cpu", 1, {}))
     assert (found.memory_bytes, found.load is None) == (expected, False)
 
 
@@ -237,7 +237,7 @@ def test_a_gpu_reports_its_own_state_and_none_for_the_rest(
     nvml, cards, used, load, hot, expected
 ):
     nvml(cards, used=used, load=load, hot=hot)
-    assert usage.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
+    assert heartbeats.usage(Device("gpu", 80 << 30, {}, "GPU-3")) == expected
 
 
 def test_errors_of_a_card_are_counted_also_by_a_worker_on_a_part_of_it(nvml, errors):
@@ -265,7 +265,7 @@ def test_a_gauge_reads_until_its_end_and_drops_what_is_old_after_a_failure(error
             raise found
         return found
 
-    gauge = usage.Gauge(look, 0.001)
+    gauge = heartbeats.Gauge(look, 0.001)
     gauge.start()
     gauge.join(20)
     assert not gauge.is_alive()

@@ -11,9 +11,9 @@ import pytest
 from rq.serializers import JSONSerializer
 from rq.worker import SimpleWorker
 
-from server.maintenance import healthcheck
-from server.maintenance.healthcheck import alive, main
-from server.workers import registry
+from microcosmos_server.maintenance import healthcheck
+from microcosmos_server.maintenance.healthcheck import alive, main
+from microcosmos_server.workers import registry
 
 HOST = "somewhere"
 
@@ -94,9 +94,9 @@ def test_a_part_that_fails_for_minutes_is_terminated_then_killed_in_a_container_
 
 def test_a_part_without_its_database_or_redis_is_not_unhealthy(services, monkeypatch):
     settings = services.settings
-    monkeypatch.setattr(healthcheck, "answers", lambda port, path: False)
+    monkeypatch.setattr(healthcheck, "answers", lambda _: False)
     assert healthcheck.fault(settings, "server") == "The server does not answer."
-    monkeypatch.setattr(healthcheck, "answers", lambda port, path: path == "/healthz")
+    monkeypatch.setattr(healthcheck, "answers", lambda url: url.endswith("/healthz"))
     with pytest.raises(ConnectionError, match="cannot reach the database, Redis"):
         healthcheck.fault(settings, "server")
     lost = settings.model_copy(update={"redis_url": "redis://127.0.0.1:1/0"})

@@ -1,9 +1,12 @@
 """The loop that takes jobs, the supervisor, its heartbeat and the renderer."""
 
+import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 import redis
@@ -11,18 +14,19 @@ from rq.job import Job
 from rq.serializers import JSONSerializer
 from rq.worker import SimpleWorker
 from sqlalchemy import select, update
+from sqlalchemy.exc import OperationalError
 
-from server.attempts.claim import claim
-from server.attempts.leases import Progress
-from server.local import process_tree
-from server.renderings.storage import RenderingFailed, enqueue
-from server.runs.lifecycle import MAX_ATTEMPTS
-from server.tables import CANCELLED, Run, Worker
-from server.workers import registry
-from worker import loop, process_setup, supervisor
-from worker.heartbeats import HEARTBEATS_AFTER_END
-from worker.renderer import retry_interrupted
-from worker.usage import Usage
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.attempts.leases import Progress
+from microcosmos_server.core import processes
+from microcosmos_server.local import process_tree
+from microcosmos_server.renderings.storage import RenderingFailed, enqueue
+from microcosmos_server.tables import CANCELLED, Run, Worker
+from microcosmos_server.workers import registry
+from microcosmos_worker import loop, supervisor
+from microcosmos_worker.device import Device
+from microcosmos_worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats, Usage
+from microcosmos_worker.renderer import mark_stopped, retry_interrupted
 
 CREATURE = "ab" * 32
 
@@ -48,7 +52,7 @@ def test_an_error_of_redis_does_not_end_it(worker, monkeypatch):
 
     def turn(worker):
         turns.append(worker)
-        monkeypatch.setattr(process_setup, "_stop_requested", len(turns) > 2)
+        monkeypatch.setattr(processes, "_stop_requested", len(turns) > 2)
         raise redis.ResponseError("MISCONF Errors writing to the AOF file")
 
     monkeypatch.setattr(loop, "take_one", turn)
@@ -94,6 +98,16 @@ def test_a_replay_that_ends_the_renderer_twice_is_given_up_with_a_reason(service
         enqueue(services, CREATURE)
 
 
+def test_a_job_is_not_blamed_for_stops_of_its_renderer(services):
+    enqueue(services, CREATURE)
+    queue = services.jobs.renderings
+    for _ in range(3):
+        take_and_die(services)
+        mark_stopped(services.jobs, queue)
+        retry_interrupted(services.jobs, queue)
+        assert queue.count == 1
+
+
 def test_a_long_rendering_counts_as_alive_for_all_its_time(services):
     enqueue(services, CREATURE)
     job = take_and_die(services)
@@ -104,7 +118,9 @@ def test_a_long_rendering_counts_as_alive_for_all_its_time(services):
 
 def test_the_supervisor_never_loads_jax_and_starts_in_any_folder(tmp_path):
     modules = "supervisor, heartbeats, loop, job_process"
-    check = f"import sys; from worker import {modules}; sys.exit('jax' in sys.modules)"
+    check = (
+        f"import sys; from microcosmos_worker import {modules}; sys.exit('jax' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", check], cwd=tmp_path).returncode == 0
 
 
@@ -133,13 +149,11 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
 def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
     run_id, row, busy, next_run, capfd
 ):
-    busy.environment["MICROCOSMOS_DATABASE_URL"] = "nonsense"
-    for number in range(1, MAX_ATTEMPTS + 1):
-        busy.carry_out(next_run())
-        assert row().attempts_without_checkpoint == number
-    assert row().status == "failed"
+    busy.environment["MICROCOSMOS_DATABASE_URL"] = "sqlite:////dev/null/none"
+    busy.carry_out(next_run())
+    assert (row().status, row().attempts_without_checkpoint) == ("queued", 1)
     assert "its process ended with status 1" in row().error
-    assert "Could not parse SQLAlchemy URL" in row().error
+    assert "/dev/null" in row().error_details
     assert "Traceback" in capfd.readouterr().err, "the worker's log has all of it"
 
 
@@ -152,7 +166,7 @@ def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
     ],
 )
 def test_a_death_is_described(code, how):
-    assert supervisor.death(code) == how
+    assert processes.exit_reason(code) == how
 
 
 @pytest.mark.parametrize(
@@ -200,12 +214,20 @@ def test_a_heartbeat_renews_the_lease_and_reports_device_usage_and_run(
 
 
 @pytest.mark.parametrize(
-    ("changes", "patience"),
-    [({"worker": "another"}, 0), ({"status": CANCELLED, "worker": None}, HEARTBEATS_AFTER_END)],
+    ("changes", "patience", "said"),
+    [
+        ({"worker": "another"}, 0, "Another worker has run"),
+        (
+            {"status": CANCELLED, "worker": None},
+            HEARTBEATS_AFTER_END,
+            "has ended, and its process",
+        ),
+    ],
 )
 def test_a_job_that_loses_or_outlives_its_run_is_killed(
-    services, heartbeat, run_id, killed, changes, patience
+    services, heartbeat, run_id, killed, changes, patience, said, caplog
 ):
+    caplog.set_level("INFO")
     heartbeat.beat()
     with services.sessions.write.begin() as session:
         session.execute(update(Run).values(**changes))
@@ -214,6 +236,31 @@ def test_a_job_that_loses_or_outlives_its_run_is_killed(
     assert not killed
     heartbeat.beat()
     assert killed == [run_id]
+    assert said in caplog.text
+
+
+def test_a_job_that_was_killed_for_its_run_is_no_death(busy, run_id, caplog):
+    busy.job = processes.start(["sleep", "60"], os.environ, stderr=subprocess.PIPE)
+    busy.output = processes.Output(busy.job)
+    threading.Timer(0.2, busy.kill_job, [busy.job]).start()
+    busy.monitor(run_id)
+    assert busy.error is None
+    assert "its process" not in caplog.text
+
+
+def test_a_job_writes_on_where_the_log_of_its_worker_is_full(monkeypatch):
+    """Its last line comes after the first that its worker could not write."""
+
+    class Full:
+        def write(self, _):
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(processes.sys, "stderr", SimpleNamespace(buffer=Full()))
+    lines = "import sys\nfor line in 'ab': print(line, file=sys.stderr, flush=True)"
+    child = processes.start([sys.executable, "-c", lines], os.environ, stderr=subprocess.PIPE)
+    output = processes.Output(child)
+    assert child.wait(60) == 0
+    assert output.tail() == "a\nb"
 
 
 def test_a_job_that_has_not_claimed_its_run_yet_is_left_alone(heartbeat, run_id, next_run):
@@ -230,3 +277,21 @@ def test_an_ended_worker_is_not_listed(services, heartbeat):
     heartbeat.end()
     with services.sessions.read() as session:
         assert not session.scalars(select(Worker)).all()
+
+
+@pytest.mark.parametrize(
+    "error", [OperationalError("", {}, Exception("it is away")), PermissionError("no gauge")]
+)
+def test_heartbeats_go_on_after_any_error(services, monkeypatch, error):
+    device = Device("a processor", 8 << 30, {})
+    heartbeats = Heartbeats(services.sessions, "worker", device, lease=0.1)
+    beat, again = heartbeats.beat, threading.Event()
+
+    def fail_once():
+        monkeypatch.setattr(heartbeats, "beat", lambda: (beat(), again.set()))
+        raise error
+
+    monkeypatch.setattr(heartbeats, "beat", fail_once)
+    heartbeats.start()
+    assert again.wait(10.0)
+    heartbeats.end()

@@ -1,12 +1,14 @@
-"""A worker takes runs only after its self-test, which it believes until something changes."""
+"""The self-test of a worker: what it finds, and how long a worker believes it."""
 
 import time
 
 import pytest
 
-from worker import process_setup, readiness
-from worker.device import Device
-from worker.readiness import Problem, Readiness
+from microcosmos.doctor.self_test import EXPECTED, fault
+from microcosmos_server.core import processes
+from microcosmos_worker import readiness
+from microcosmos_worker.device import Device
+from microcosmos_worker.readiness import Problem, Readiness
 
 
 @pytest.mark.long
@@ -35,8 +37,12 @@ def test_a_self_test_is_believed_until_something_has_changed(services, busy, mon
     same = Readiness(services, Device("a processor", 8 << 30, {}))
     assert same.check()
     assert same.device_kinds == ready.device_kinds
-    changed = {"JAX_PLATFORMS": "cuda"}, {"MICROCOSMOS_KERNEL": "jax"}
-    for environment in changed:
+    changed = {
+        "JAX_PLATFORMS": "cuda",
+        "MICROCOSMOS_KERNEL": "jax",
+        "MICROCOSMOS_INSTRUCTION_SET": "basic",
+    }
+    for environment in ({name: value} for name, value in changed.items()):
         assert not Readiness(services, Device("a processor", 8 << 30, environment)).check()
     assert not Readiness(services, Device("another", 8 << 30, {})).check()
     assert not ready.test_device()
@@ -44,8 +50,41 @@ def test_a_self_test_is_believed_until_something_has_changed(services, busy, mon
 
 
 def test_a_self_test_ends_when_its_worker_has_to_stop(busy, monkeypatch):
-    monkeypatch.setattr(process_setup, "_stop_requested", True)
+    monkeypatch.setattr(processes, "_stop_requested", True)
     began = time.monotonic()
     assert not busy.readiness.test_device()
     assert busy.readiness.problem == ("untested", "Its self-test fails: the worker has to stop")
     assert time.monotonic() - began < readiness.TEST_SECONDS / 10
+
+
+@pytest.mark.parametrize(
+    ("status", "last", "problem"),
+    [
+        (0, '["a cpu"]', None),
+        (0, "bye from a library", "it gave no result and ended with status 0"),
+        (1, '"a wrong number"', "a wrong number"),
+        (-6, '"a wrong number"', "it gave no result and was killed by SIGABRT"),
+        (-6, "", "it gave no result and was killed by SIGABRT"),
+        (1, "[]", "it gave no result and ended with status 1"),
+    ],
+)
+def test_a_self_test_ends_in_a_result_or_a_problem(busy, monkeypatch, status, last, problem):
+    done = processes.Finished(status, f"hello\n{last}\n".encode() if last else b"", b"")
+    monkeypatch.setattr(processes, "run", lambda *_, **__: done)
+    assert busy.readiness.test_device() == (problem is None)
+    found = busy.readiness.problem
+    assert found is None or found.text == f"Its self-test fails: {problem}"
+
+
+def test_the_least_wrong_bit_of_the_kernel_is_noticed():
+    assert fault(list(EXPECTED), exact=True) is None
+    off = [*EXPECTED[:-1], EXPECTED[-1] * (1 + 1e-7)]
+    assert fault(off, exact=True)
+    assert fault(off, exact=False) is None
+
+
+@pytest.mark.parametrize("wrong", [1.02, 0.0, float("nan")])
+@pytest.mark.parametrize("place", range(len(EXPECTED)))
+def test_a_wrong_number_is_noticed(place, wrong):
+    found = [x * wrong if i == place else x for i, x in enumerate(EXPECTED)]
+    assert "instead of" in fault(found, exact=False)

@@ -9,10 +9,19 @@ import pytest
 import reports
 
 from microcosmos.archive import creature
-from server.creatures import storage as creatures
-from server.renderings import storage as renderings
-from server.tables import AUDIT, EVALUATION, GIF, MEASUREMENT, MP4, PREVIEW, REPLAY, STRIP
-from worker.renderings import make
+from microcosmos_server.creatures import storage as creatures
+from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.tables import (
+    AUDIT,
+    EVALUATION,
+    GIF,
+    MEASUREMENT,
+    MP4,
+    PREVIEW,
+    REPLAY,
+    STRIP,
+)
+from microcosmos_worker.renderings import make
 
 
 def replay() -> bytes:

@@ -9,8 +9,8 @@ from uuid import UUID
 import numpy as np
 from sqlalchemy import insert, select
 
-from server.services.services import Services
-from server.tables import FINISHED, Elite, Generation, Run
+from microcosmos_server.services.services import Services
+from microcosmos_server.tables import FINISHED, Elite, Generation, Run
 
 GENERATIONS = 200
 

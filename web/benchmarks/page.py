@@ -26,8 +26,8 @@ from playwright.sync_api import TimeoutError as Late
 from rich.console import Console
 from rich.table import Table
 
-from server.services.services import connect
-from server.settings import Settings
+from microcosmos_server.services.services import connect
+from microcosmos_server.settings import Settings
 
 CORES = 2
 SETTINGS = {"MICROCOSMOS_DEMONSTRATION": "false"}
@@ -35,15 +35,21 @@ WINDOW: ViewportSize = {"width": 1280, "height": 900}
 WALL: ViewportSize = {"width": 1600, "height": 1600}
 PHONE: ViewportSize = {"width": 390, "height": 844}
 SECONDS = 5
-"""In which frames of the tank are counted."""
+"""In which frames are counted."""
+TRAILS_MS = 3000
+"""Time until the trails of the tank have grown."""
+SCROLLED_MS = 300
+"""Time until a part of the page that has become visible is loaded."""
 TIMES = 5
 REDRAWS = 60
 HOVERS = 30
 TILE = 36
 """Side of a tile in pixels."""
-PATIENCE_MS = 20_000
-CREATURES = 16 if os.environ.get("SMALL") else 400
-BIRTHS = 1000 if os.environ.get("SMALL") else 100_000
+PATIENCE_MS = 120_000
+"""How long a slow machine may take for a step."""
+CREATURES, BIRTHS, GENERATIONS = 400, 100_000, 150
+MEDIUM, LARGE = 100, 256
+"""Cells along each side of the two large archives."""
 
 
 def main() -> None:
@@ -64,8 +70,8 @@ def prepare(product: Installation) -> tuple[str, str, str, str]:
     creatures = creatures_of(services, found)[:CREATURES]
     side = round(CREATURES**0.5)
     runs = (
-        write_run(services, found, 100, 10_000, creatures),
-        write_run(services, found, 256, 65_536, creatures),
+        write_run(services, found, MEDIUM, MEDIUM**2, creatures),
+        write_run(services, found, LARGE, LARGE**2, creatures),
         write_run(services, found, side, side**2, creatures),
         write_births(services, found, BIRTHS),
     )
@@ -78,7 +84,7 @@ def searched(product: Installation) -> str:
     experiments = product.http.get("/api/v1/experiments").raise_for_status().json()
     search = next(one for one in experiments if one["experiment"] == "quality-diversity")
     spec = search["presets"][0]["spec"]
-    spec["search"]["generations"] = 150
+    spec["search"]["generations"] = GENERATIONS
     run = product.submit(spec)
     product.wait(run, "finished", seconds=600)
     return run
@@ -89,8 +95,12 @@ def table(browser: Browser, product: Installation, runs: tuple[str, str, str, st
     wall = f"{square}?view=gallery&tile={TILE}"
     body = body_of(product, runs[2])
     measures: list[tuple[str, str, Callable[[], str]]] = [
-        ("first paint of a run with 10,000 cells", "≤ 1 s", lambda: paint(browser, first)),
-        ("redraw of 65,536 cells", "≤ 16 ms", lambda: redraw(browser, largest)),
+        (
+            f"first paint of a run with {MEDIUM**2:,} cells",
+            "≤ 1 s",
+            lambda: paint(browser, first),
+        ),
+        (f"redraw of {LARGE**2:,} cells", "≤ 16 ms", lambda: redraw(browser, largest)),
         ("pointing at them, one after another", "", lambda: sweep(browser, largest)),
         ("playing their history", "", lambda: play(browser, largest)),
         ("pointer on a cell to its first frame", "≤ 50 ms", lambda: hover(browser, square)),
@@ -125,6 +135,7 @@ def measured(measure: Callable[[], str]) -> str:
     try:
         return measure()
     except Late as error:
+        print(error.message, file=sys.stderr)
         return f"not there: {error.message.splitlines()[0]}"
 
 
@@ -147,8 +158,8 @@ def until_noted(page: Page, name: str, after: float = 0.0) -> float:
     return page.wait_for_function(script, arg=[name, after]).json_value()["startTime"]
 
 
-def until_elites(page: Page, count: str) -> None:
-    page.get_by_text(f"{count} elites").first.wait_for()
+def until_elites(page: Page, count: int) -> None:
+    page.get_by_text(f"{count:,} elites").first.wait_for()
 
 
 def paint(browser: Browser, url: str) -> str:
@@ -156,7 +167,7 @@ def paint(browser: Browser, url: str) -> str:
     times = []
     for _ in range(TIMES):
         with opened(browser, url) as page:
-            until_elites(page, "10,000")
+            until_elites(page, MEDIUM**2)
             times.append(until_noted(page, "map") / 1000)
     return f"{statistics.median(times):.2f} s, slowest {max(times):.2f} s, of {TIMES}"
 
@@ -164,34 +175,33 @@ def paint(browser: Browser, url: str) -> str:
 def redraw(browser: Browser, url: str) -> str:
     """Time of a drawing, repeated by changes of the theme."""
     with opened(browser, url) as page:
-        until_elites(page, "65,536")
+        until_elites(page, LARGE**2)
         until_noted(page, "map")
         page.evaluate("window.noted.length = 0")
         for k in range(REDRAWS):
+            before = page.evaluate("performance.now()")
             page.emulate_media(color_scheme=("dark", "light")[k % 2])
-            page.wait_for_timeout(50)
+            until_noted(page, "map-draw", before)
         drawings = "window.noted.filter((n) => n.name === 'map-draw').map((n) => n.duration)"
         times = page.evaluate(drawings)
-    if len(times) < 2:
-        return "not there: no measures `map-draw`"
     tenth = statistics.quantiles(times, n=10)[-1]
     return f"{statistics.median(times):.1f} ms, one in ten over {tenth:.1f} ms, of {len(times)}"
 
 
 def sweep(browser: Browser, url: str) -> str:
-    """Frames per second while the pointer moves over 65,536 cells."""
+    """Frames per second while the pointer moves over the largest archive."""
     with opened(browser, url) as page:
-        until_elites(page, "65,536")
-        return f"{page.evaluate(FRAMES, [5, True]):.0f} frames/s"
+        until_elites(page, LARGE**2)
+        return f"{page.evaluate(FRAMES, [SECONDS, True]):.0f} frames/s"
 
 
 def play(browser: Browser, url: str) -> str:
-    """Frames per second while the history of 65,536 cells is played."""
+    """Frames per second while the history of the largest archive is played."""
     with opened(browser, url) as page:
-        until_elites(page, "65,536")
+        until_elites(page, LARGE**2)
         page.get_by_role("button", name="Play the history").click()
-        page.get_by_text("65,536 elites").first.wait_for(state="detached")
-        return f"{page.evaluate(FRAMES, [3, False]):.0f} frames/s"
+        page.get_by_text(f"{LARGE**2:,} elites").first.wait_for(state="detached")
+        return f"{page.evaluate(FRAMES, [SECONDS, False]):.0f} frames/s"
 
 
 def hover(browser: Browser, url: str) -> str:
@@ -240,7 +250,7 @@ def frames(browser: Browser, url: str, window: ViewportSize, slower: int) -> str
     """Time of the page's main thread for each frame of the tank."""
     with opened(browser, url, window) as page:
         until_noted(page, "tank")
-        page.wait_for_timeout(3000)  # Their trails grow.
+        page.wait_for_timeout(TRAILS_MS)
         count = page.get_by_role("application").first.get_attribute("aria-label") or ""
         spent, rate = work_of_frames(page, SECONDS, slower)
     return f"{spent:.1f} ms at {rate:.0f} frames/s; {' '.join(count.split()[2:5])}"
@@ -291,7 +301,7 @@ def scripts(browser: Browser, url: str) -> set[str]:
         page.get_by_role("main").wait_for()
         for _ in range(10):  # Parts far below are loaded when they become visible.
             page.mouse.wheel(0, 900)
-            page.wait_for_timeout(300)
+            page.wait_for_timeout(SCROLLED_MS)
         names = "performance.getEntriesByType('resource').map(({ name }) => name)"
         return {Path(name).name for name in page.evaluate(names)}
 

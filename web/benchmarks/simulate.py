@@ -47,7 +47,7 @@ def any_creature(side: int) -> dict:
                 "experiment": "quality-diversity",
                 "world": {"width": side, "height": side},
                 "body": {"nodes": 32},
-                "task": {"steps": STEPS},
+                "task": {"steps": STEPS, "fitness": "displacement"},
                 "search": {"generations": 1, "batch": 2, "block": 1},
             }
         )

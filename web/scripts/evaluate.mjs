@@ -19,4 +19,5 @@ for (const file of files) {
     data: { module, inputs: new Uint8Array(readFileSync(file)).buffer },
   });
 }
-console.log(JSON.stringify(answers));
+// JSON writes −0 as 0.
+console.log(JSON.stringify(answers, (_, value) => (Object.is(value, -0) ? "-0" : value)));

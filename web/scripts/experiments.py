@@ -2,7 +2,7 @@
 
 import json
 
-from server.specs.routes import built_in
+from microcosmos_server.specs.routes import built_in
 
 
 def main() -> None:

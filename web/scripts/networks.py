@@ -31,7 +31,7 @@ PLACES = np.linspace(-1, 1, ROWS)
 def cases() -> list[dict[str, Any]]:
     """Networks of each kind with their outputs at some places and times."""
     forward = [_forward(network) for network in _grown(6)]
-    return [*forward, _recurrent(), _layered()]
+    return [*forward, _recurrent()]
 
 
 def _grown(count: int) -> list[genomes.CPPN]:
@@ -72,7 +72,7 @@ def _forward(network: genomes.CPPN) -> dict[str, Any]:
     )
     outputs = _evaluate(network, _grid())
     control = {"wave_number": WAVES}
-    return _case("cppn", genomes.to_genes(network), control, np.asarray(outputs), WITH_WAVE)
+    return _case(genomes.to_genes(network), control, np.asarray(outputs), WITH_WAVE)
 
 
 def _shortened(values: np.ndarray) -> jnp.ndarray:
@@ -107,26 +107,17 @@ def _recurrent() -> dict[str, Any]:
         outputs.append(np.asarray(values[3:5]))
     steps = STEPS - PERIOD + np.arange(COLUMNS) * PERIOD // COLUMNS
     found = np.stack(outputs)[steps].swapaxes(0, 1).reshape(2, -1)
-    return _case("cppn", genes, {"recurrent": True}, found)
-
-
-def _layered() -> dict[str, Any]:
-    layers = genomes.Layers((3, 5, 4, 2), "sin", 1.7)
-    genes = np.random.default_rng(0).uniform(-1, 1, layers.genes).astype(np.float32)
-    outputs = genomes.forward(layers, jnp.asarray(genes), _grid()[: len(NAMES)])
-    control = {"hidden": [5, 4], "activation": "sin", "scale": 1.7}
-    return _case("weights", {"values": encode(genes)}, control, np.asarray(outputs))
+    return _case(genes, {"recurrent": True}, found)
 
 
 def _case(
-    encoding: str,
     genes: dict[str, Any],
     control: dict[str, Any],
     outputs: np.ndarray,
     inputs: tuple[str, ...] = NAMES,
 ) -> dict[str, Any]:
     clock = {"timer": "sine-cosine", "period": PERIOD, "position": "signed"}
-    common = {"encoding": encoding, "inputs": inputs, "outputs": OUTPUTS}
+    common = {"encoding": "cppn", "inputs": inputs, "outputs": OUTPUTS}
     values = outputs.reshape(len(OUTPUTS), COLUMNS, ROWS)
     return {
         "genome": {**common, "control": {**clock, **control}, **genes},

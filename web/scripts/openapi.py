@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from server.app import create_app
-from server.services.services import connect
-from server.settings import Settings
+from microcosmos_server.app import create_app
+from microcosmos_server.services.services import connect
+from microcosmos_server.settings import Settings
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 // A hundred random evaluations and a checksum of all that they return: the same for every compiler
 // and instruction set. Prints the checksum and how many evaluations stayed finite; `evaluations N`
 // carries out N of them.
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -163,7 +164,8 @@ struct Evaluation {
   void place(Random& random) {
     parameters.assign(STEP_LENGTHS, 0);
     parameters[VISCOSITY] = random.between(0.02f, 0.5f);
-    parameters[ENERGY_RATE] = random.below(2) * 0.1f;
+    parameters[NU_C] = INFINITY;
+    parameters[ENERGY_RATE] = random.below(2) ? 0.1f : -1;
     parameters[DIFFUSION] = random.below(2) * 0.05f;
     parameters[DISPLACEMENT_LIMIT] = parameters[FORCE_LIMIT] = 0.1f;
     parameters[FORCE_FACTOR] = 2, parameters[THETA_FEEDBACK] = 1, parameters[REPULSION] = 4;

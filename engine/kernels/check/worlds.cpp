@@ -251,8 +251,9 @@ class Fuzzed {
     const size_t N = r.nodes, T = r.steps, cells = size_t(r.height) * r.width;
     float* parameters = numbers(STEP_LENGTHS + r.iterations, 0.01f, 1);
     for (int one : {NU_C, ENERGY_RATE, DIFFUSION})
-      if (coin()) parameters[one] = 0;
-    for (int one : {DISPLACEMENT_LIMIT, FORCE_LIMIT})
+      if (few()) parameters[one] = 0;
+    if (coin()) parameters[ENERGY_RATE] = -1;
+    for (int one : {NU_C, DISPLACEMENT_LIMIT, FORCE_LIMIT})
       if (coin()) parameters[one] = INFINITY;
     r.parameters = parameters;
     for (int i = 0; i < 9; i++) {

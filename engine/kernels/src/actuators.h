@@ -1,5 +1,5 @@
-// Actuators with finite means, as in `genomes.actuators`: bounds on the bend and on the pace of
-// what a controller commands, and a lag.
+// Actuators with finite means, as in `genomes.actuators`: they bound the bend and the pace of
+// commands, and follow them with a lag.
 #pragma once
 #include "shapes.h"
 
@@ -30,11 +30,13 @@ class Actuators {
     if (!r_.actuated) return;
     for (int t = 0; t < T; t++) bound(angle + size_t(t) * J);
     if (r_.control[MAX_SPEED] > 0) slow(angle, length, clock);
+    // A slow clock reads commands of earlier steps, which the results below overwrite: copies.
     const List<float> angles(angle, angle + size_t(T) * J);
     const List<float> lengths(length, length + size_t(T) * E);
     Rest rest = start_;
     for (int t = 0; t < T; t++) {
       const float at = clock[t];
+      // At the end of the last step the clock may stand at T, beyond the last command.
       const int index = std::min(std::max(int(at), 0), T - 1);
       const float share = at - float(index);
       auto follow = [&](const float* given, const float* start, int count, float* state,
@@ -71,7 +73,7 @@ class Actuators {
   }
 
  private:
-  // The rest shape in which the body stands at the start.
+  // Set the start shape to the rest shape in which the body stands.
   void stand() {
     auto at = [&](int node, int axis) { return r_.positions[2 * node + axis]; };
     for (int j = 0; j < r_.joints; j++) {
@@ -106,6 +108,7 @@ class Actuators {
         first = false;
       }
     }
+    // A shape without a bend has no span: the least one keeps the division finite.
     const float span = high - low, share = most / (span > 1e-6f ? span : 1e-6f);
     if (!(share < 1)) return;
     for (int j = 0; j < r_.joints; j++) {
@@ -138,10 +141,11 @@ class Actuators {
     return root(largest.total() + 1e-20f);
   }
 
-  // The clock that slows where commands are too fast: 1 a step or slower.
+  // Find the clock, which advances by 1 a step, or less where commands are too fast.
   void slow(const float* angle, const float* length, float* clock) {
     const int T = r_.steps, J = r_.joints, E = r_.edges;
-    List<double> took(T + 1);  // Steps until the end of each command.
+    // Steps until the end of each command, in double precision: long runs add thousands of them.
+    List<double> took(T + 1);
     lay_out_before(start_.angle.data(), start_.length.data());
     for (int t = 0; t < T; t++) {
       const float speed = fastest(angle + size_t(t) * J, length + size_t(t) * E);

@@ -12,9 +12,9 @@ namespace ffi = xla::ffi;
 using Shape = std::vector<int64_t>;
 
 inline std::string text(const Shape& shape) {
-  std::string found = "(";
-  for (int64_t one : shape) found += std::to_string(one) + ", ";
-  return found + ")";
+  std::string listed = "(";
+  for (int64_t one : shape) listed += std::to_string(one) + ", ";
+  return listed + ")";
 }
 
 // Operands and results in the order in which they are named. Batch axes come first; an operand
@@ -33,8 +33,8 @@ class Arrays {
       error = "the planes must have two axes";
       return false;
     }
-    const auto found = (**first).dimensions();
-    batch = Shape(found.begin(), found.end() - 2);
+    const auto dimensions = (**first).dimensions();
+    batch = Shape(dimensions.begin(), dimensions.end() - 2);
     return true;
   }
 
@@ -45,9 +45,9 @@ class Arrays {
     operand(name, (void**)to, base, ffi::DataType::S32);
   }
   void out(const char* name, float** to, const Shape& base) {
-    auto found = rets_.get<ffi::AnyBuffer>(results_++);
-    if (found.has_error()) return fail(std::string("there is no result ") + name);
-    bind(name, (void**)to, base, ffi::DataType::F32, **found);
+    auto buffer = rets_.get<ffi::AnyBuffer>(results_++);
+    if (buffer.has_error()) return fail(std::string("there is no result ") + name);
+    bind(name, (void**)to, base, ffi::DataType::F32, **buffer);
   }
 
   void end() {
@@ -69,6 +69,7 @@ class Arrays {
       for (size_t axis = batch.size(); axis-- > 0;) {
         const int64_t place = rest % batch[axis];
         rest /= batch[axis];
+        // JAX gives an operand that all worlds share an axis of length 1 ("expand_dims").
         index += one.dimensions[axis] == 1 ? 0 : place * scale;
         scale *= one.dimensions[axis];
       }
@@ -85,23 +86,23 @@ class Arrays {
   };
 
   void operand(const char* name, void** to, const Shape& base, ffi::DataType type) {
-    const auto found = args_.get<ffi::AnyBuffer>(operands_++);
-    if (found.has_error()) return fail(std::string("there is no operand ") + name);
-    bind(name, to, base, type, *found);
+    const auto buffer = args_.get<ffi::AnyBuffer>(operands_++);
+    if (buffer.has_error()) return fail(std::string("there is no operand ") + name);
+    bind(name, to, base, type, *buffer);
   }
 
   void bind(const char* name, void** to, const Shape& base, ffi::DataType type,
             const ffi::AnyBuffer& buffer) {
-    const Shape found(buffer.dimensions().begin(), buffer.dimensions().end());
-    bool fits = found.size() == batch.size() + base.size() && buffer.element_type() == type;
-    for (size_t i = 0; fits && i < batch.size(); i++) fits = found[i] == batch[i] || found[i] == 1;
-    for (size_t i = 0; fits && i < base.size(); i++) fits = found[batch.size() + i] == base[i];
+    const Shape shape(buffer.dimensions().begin(), buffer.dimensions().end());
+    bool fits = shape.size() == batch.size() + base.size() && buffer.element_type() == type;
+    for (size_t i = 0; fits && i < batch.size(); i++) fits = shape[i] == batch[i] || shape[i] == 1;
+    for (size_t i = 0; fits && i < base.size(); i++) fits = shape[batch.size() + i] == base[i];
     if (!fits)
       return fail(std::string(name) + " must have the shape " + text(base) + " and four bytes an " +
-                  "item, got " + text(found));
+                  "item, got " + text(shape));
     int64_t size = 1;
     for (int64_t one : base) size *= one;
-    bound_.push_back({to, buffer.untyped_data(), found, size});
+    bound_.push_back({to, buffer.untyped_data(), shape, size});
   }
 
   void fail(const std::string& reason) {

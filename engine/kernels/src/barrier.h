@@ -1,4 +1,4 @@
-// Obstacles keep bodies out: the rigid motion of each body away from solid cells, as in
+// The rigid motion of each body away from solid cells, which keeps bodies out of obstacles, as in
 // `world.nodes`.
 #pragma once
 #include "density.h"
@@ -24,7 +24,7 @@ class Barrier {
   }
 
  private:
-  // The displacement at a node, interpolated between the four cells around it.
+  // Interpolate the displacement at a node between the four cells around it.
   void read(const Nodes& n, int slot) {
     const int H = r_.height, W = r_.width;
     float dx, dy;
@@ -39,7 +39,7 @@ class Barrier {
     away_x_[slot] = ax, away_y_[slot] = ay, weight_[slot] = root(ax * ax + ay * ay + 1e-24f);
   }
 
-  // The mean of displacements, weighted by their lengths, and the turn by what is left of them.
+  // Move a body by the mean of displacements, weighted by their lengths, and turn it by the rest.
   void move(Range body, const Nodes& n) {
     Sum count, sx, sy, touching, mx, my, torque;
     Most largest;
@@ -49,6 +49,7 @@ class Barrier {
       touching.add(part, w), mx.add(part, w * load(away_x_ + i));
       my.add(part, w * load(away_y_ + i));
     });
+    // Above the weights of 1e-12 that untouched nodes have by the guard of their root.
     const float nodes = count.total(), weight = touching.total() + 1e-9f;
     const float x0 = sx.total() / nodes, y0 = sy.total() / nodes;
     const float x = mx.total() / weight, y = my.total() / weight;

@@ -52,12 +52,12 @@ struct Pairs {
   }
 };
 
-// The values at the slots of one vector of pairs.
+// Read the values at the slots of one vector of pairs.
 INLINE Vec gather(const float* values, const int32_t* slots, bool adjacent) {
   if (adjacent) return load(values + slots[0]);
-  float found[LANES];
-  for (int i = 0; i < LANES; i++) found[i] = values[slots[i]];
-  return load(found);
+  float gathered[LANES];
+  for (int i = 0; i < LANES; i++) gathered[i] = values[slots[i]];
+  return load(gathered);
 }
 
 INLINE void scatter(float* values, const int32_t* slots, const int32_t* item, bool adjacent,
@@ -137,16 +137,16 @@ inline void Bodies::place_nodes(const Rollout& r) {
   bodies.assign(r.bodies, {0, 0});
   for (int i = 0; i < r.nodes;) {
     const int body = r.member[order[i]], piece = r.piece[order[i]];
-    Piece found;
+    Piece next;
     for (; i < r.nodes && r.member[order[i]] == body && r.piece[order[i]] == piece; i++)
-      found.node_of.push_back(order[i]);
-    const int count = int(found.node_of.size()), half = halves(count);
+      next.node_of.push_back(order[i]);
+    const int count = int(next.node_of.size()), half = halves(count);
     for (int k = 0; k < count; k++)
-      node_slot[found.node_of[k]] = node_slots + (k & 1) * half + k / 2;
-    found.nodes = {node_slots, node_slots + 2 * half};
+      node_slot[next.node_of[k]] = node_slots + (k & 1) * half + k / 2;
+    next.nodes = {node_slots, node_slots + 2 * half};
     if (bodies[body].to == 0) bodies[body].from = node_slots;
-    node_slots = bodies[body].to = found.nodes.to;
-    pieces.push_back(found);
+    node_slots = bodies[body].to = next.nodes.to;
+    pieces.push_back(next);
   }
 }
 
@@ -182,6 +182,8 @@ inline void Bodies::place_edges(const Rollout& r) {
   int one = 0, other = 0;
   for (const Piece& piece : pieces)
     for (int slot = piece.edges.from; slot < piece.edges.to; slot++) {
+      // A slot without an edge continues the run of its neighbours, so that a block with a gap at
+      // its end still counts as consecutive.
       const int e = edge_at[slot], last = piece.nodes.to - 1;
       one = e < 0 ? std::min(one + 1, last) : node_slot[r.ends[2 * e]];
       other = e < 0 ? std::min(other + 1, last) : node_slot[r.ends[2 * e + 1]];
@@ -193,23 +195,25 @@ inline void Bodies::place_edges(const Rollout& r) {
   edges.fill(node_slots, edge_slots), joints.fill(edge_slots, edge_slots);
 }
 
-// Whether a piece is a filament short enough for registers, whose colours take turns.
+// Return whether a piece is a filament short enough for registers, whose colours take turns.
 inline bool Bodies::is_filament(const Rollout& r, const Piece& piece) const {
-  bool found = piece.chain && piece.nodes.to - piece.nodes.from <= 8 * BLOCK;
+  // `Sweeps::apply` has programs for at most four blocks of each half.
+  bool fits = piece.chain && piece.nodes.to - piece.nodes.from <= 8 * BLOCK;
   for (size_t k = 0; k < piece.edge_of.size(); k++)
-    found = found && r.edge_colour[piece.edge_of[k]] == int(k & 1);
+    fits = fits && r.edge_colour[piece.edge_of[k]] == int(k & 1);
   for (size_t k = 0; k < piece.joint_of.size(); k++)
-    found = found && r.joint_colour[piece.joint_of[k]] == int(k & 1);
-  return found;
+    fits = fits && r.joint_colour[piece.joint_of[k]] == int(k & 1);
+  return fits;
 }
 
 inline void Bodies::colour(const Rollout& r) {
   if (r.matched) return;
-  constexpr int TILE = 512;          // Slots.
-  using Found = std::array<int, 5>;  // Colour, slots of the pair, number, own slot.
-  auto coloured = [](List<Pairs>& colours, List<Found>& found, int end, int own) {
-    std::sort(found.begin(), found.end());
-    for (auto [colour, one, other, item, slot] : found) {
+  constexpr int TILE = 512;               // Slots.
+  using Constraint = std::array<int, 5>;  // Colour, slots of the pair, number, own slot.
+  auto coloured = [](List<Pairs>& colours, List<Constraint>& constraints, int end, int own) {
+    // By colour, which orders the sweep, then by slot, so that neighbours fill vectors.
+    std::sort(constraints.begin(), constraints.end());
+    for (auto [colour, one, other, item, slot] : constraints) {
       if (colour >= int(colours.size())) colours.resize(colour + 1);
       colours[colour].add(one, other, item, slot);
     }
@@ -218,7 +222,7 @@ inline void Bodies::colour(const Rollout& r) {
   for (size_t p = 0; p < pieces.size();) {
     Tile tile;
     tile.pieces.from = int(p);
-    List<Found> edges_found, joints_found;
+    List<Constraint> tile_edges, tile_joints;
     const int start = pieces[p].nodes.from;
     do {
       if (is_filament(r, pieces[p])) {
@@ -226,29 +230,30 @@ inline void Bodies::colour(const Rollout& r) {
         continue;
       }
       for (int e : pieces[p].edge_of)
-        edges_found.push_back({r.edge_colour[e], node_slot[r.ends[2 * e]],
-                               node_slot[r.ends[2 * e + 1]], e, edge_slot[e]});
+        tile_edges.push_back({r.edge_colour[e], node_slot[r.ends[2 * e]],
+                              node_slot[r.ends[2 * e + 1]], e, edge_slot[e]});
       for (int j : pieces[p].joint_of) {
         const int one = edge_slot[r.pairs[2 * j]], other = edge_slot[r.pairs[2 * j + 1]];
-        joints_found.push_back({r.joint_colour[j], one, other, j, one});
+        tile_joints.push_back({r.joint_colour[j], one, other, j, one});
       }
     } while (++p < pieces.size() && pieces[p].nodes.to - start <= TILE);
     const Piece& last = pieces[p - 1];
-    coloured(tile.edge_colours, edges_found, last.nodes.to, last.edges.to);
-    coloured(tile.joint_colours, joints_found, last.edges.to, last.edges.to);
+    coloured(tile.edge_colours, tile_edges, last.nodes.to, last.edges.to);
+    coloured(tile.joint_colours, tile_joints, last.edges.to, last.edges.to);
     tile.pieces.to = int(p);
     if (!tile.edge_colours.empty()) tiles.push_back(std::move(tile));
   }
 }
 
-// Whether no edge and no joint joins two bodies.
+// Return whether no edge and no joint joins two bodies. The engine makes no other graph, but the
+// boundary lets it pass: then one member takes all bodies.
 inline bool apart(const Rollout& r) {
-  auto of = [&](int edge, int end) { return r.member[r.ends[2 * edge + end]]; };
-  bool found = true;
-  for (int e = 0; e < r.edges; e++) found = found && of(e, 0) == of(e, 1);
+  auto body_of = [&](int edge, int end) { return r.member[r.ends[2 * edge + end]]; };
+  bool separate = true;
+  for (int e = 0; e < r.edges; e++) separate = separate && body_of(e, 0) == body_of(e, 1);
   for (int j = 0; j < r.joints; j++)
-    found = found && of(r.pairs[2 * j], 0) == of(r.pairs[2 * j + 1], 0);
-  return found;
+    separate = separate && body_of(r.pairs[2 * j], 0) == body_of(r.pairs[2 * j + 1], 0);
+  return separate;
 }
 
 inline List<Share> Bodies::shares(const Rollout& r, int count) const {
@@ -258,10 +263,10 @@ inline List<Share> Bodies::shares(const Rollout& r, int count) const {
   for (size_t p = 1; p < pieces.size(); p++) begins[p] = begins[p] && body(p) != body(p - 1);
   for (const Tile& tile : tiles)
     for (int p = tile.pieces.from + 1; p < tile.pieces.to; p++) begins[p] = 0;
-  List<Share> found(count);
+  List<Share> shares(count);
   const int end = int(pieces.size());
   for (int n = 0, piece = 0, tile = 0, filament = 0; n < count; n++) {
-    Share& s = found[n];
+    Share& s = shares[n];
     s.pieces.from = piece, s.tiles.from = tile, s.filaments.from = filament;
     const int64_t goal = int64_t(node_slots) * (n + 1) / count;
     while (piece < end && (piece == s.pieces.from || n + 1 == count || !begins[piece] ||
@@ -277,11 +282,11 @@ inline List<Share> Bodies::shares(const Rollout& r, int count) const {
   }
   for (int n = 0; n < count; n++) {
     const bool last = n + 1 == count;
-    found[n].nodes.to = last ? node_slots : found[n + 1].nodes.from;
-    found[n].edges.to = last ? edge_slots : found[n + 1].edges.from;
-    found[n].bodies.to = last ? r.bodies : found[n + 1].bodies.from;
+    shares[n].nodes.to = last ? node_slots : shares[n + 1].nodes.from;
+    shares[n].edges.to = last ? edge_slots : shares[n + 1].edges.from;
+    shares[n].bodies.to = last ? r.bodies : shares[n + 1].bodies.from;
   }
-  return found;
+  return shares;
 }
 
 }  // namespace microcosmos::ISA

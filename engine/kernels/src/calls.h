@@ -1,5 +1,5 @@
-// The kernel's calls: their numbers, and their operands and results in the order of `world.native`
-// and `search.summary`, whatever carries them.
+// The numbers, operands and results of the kernel's calls, in the order of `world.native` and
+// `search.window`: the same for XLA's interface and for WebAssembly.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace microcosmos {
 
-// The sizes of a body and its controller; what is wrong with them, if anything is.
+// Read the sizes of a body and its controller; return what is wrong with them, or "".
 template <class Numbers>
 std::string read_body(Rollout& r, Numbers number) {
   r.steps = number("steps"), r.bodies = number("bodies");
@@ -35,7 +35,7 @@ std::string read_body(Rollout& r, Numbers number) {
   return "";
 }
 
-// The sizes and the form of a world; what is wrong with them, if anything is.
+// Read the sizes and the form of a world; return what is wrong with them, or "".
 template <class Numbers>
 std::string read_world(Rollout& r, Numbers number) {
   r.height = number("height"), r.width = number("width");
@@ -61,7 +61,7 @@ std::string read_world(Rollout& r, Numbers number) {
   return "";
 }
 
-// The numbers of each call; what is wrong with them, if anything is.
+// Read the numbers of a call; return what is wrong with them, or "".
 template <class Numbers>
 std::string read_rollout(Rollout& r, Numbers number) {
   const std::string wrong = read_body(r, number);
@@ -73,7 +73,7 @@ std::string read_development(Rollout& r, Numbers number) {
   const std::string wrong = read_body(r, number);
   if (!wrong.empty()) return wrong;
   if (r.commands == GIVEN || r.senses) return "there is nothing to develop";
-  r.matched = true;  // Nothing is swept.
+  r.matched = true;  // A development sweeps nothing: it needs no colours.
   return "";
 }
 
@@ -205,7 +205,8 @@ inline bool within(const int32_t* values, int64_t count, int32_t least, int64_t 
   return true;
 }
 
-// Whether graphs refer to nothing that is not there.
+// Return whether all numbers by which graphs refer to items are in range: the kernel indexes by
+// them without further checks.
 inline bool sound(const Rollout& r) {
   const bool colours = r.matched || (within(r.edge_colour, r.edges, 0, r.edges) &&
                                      within(r.joint_colour, r.joints, 0, r.joints));

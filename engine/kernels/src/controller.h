@@ -28,7 +28,7 @@ class Controller {
   }
 
   // Command the rest shapes of the steps from `first` on, (step, joint) and (step, edge);
-  // `sensed` is the energy at each node, of one step.
+  // `sensed` is the energy at each node, of one step, for a controller that senses.
   void command(int first, int count, const float* sensed, float* angle, float* length) {
     for (int step = 0; step < count; step += times_) {
       const int part = std::min(times_, count - step);
@@ -69,12 +69,12 @@ class Controller {
           c[n] = timer[1] * wave_[nodes_ + n] + timer[0] * wave_[n];
         }
       }
-      if (sensed) std::memcpy(network_.row(input++) + at, sensed, 4 * size_t(nodes_));
+      if (r_.senses) std::memcpy(network_.row(input++) + at, sensed, 4 * size_t(nodes_));
     }
   }
 
-  // Rest shapes from the outputs: a joint takes that at its node, times its gain, an edge the
-  // mean of its ends.
+  // Turn outputs into rest shapes: a joint takes the output at its node times its gain, an edge the
+  // mean of those at its ends.
   void read(int first, int count, float* angle, float* length) {
     const float *turned = network_.row(r_.inputs), *stretched = network_.row(r_.inputs + 1);
     for (int i = 0; i < count * nodes_; i += LANES) {
@@ -92,7 +92,7 @@ class Controller {
     }
   }
 
-  // Rest shapes from sums of functions of time, within -1 and 1; genes are (term, item).
+  // Turn sums of functions of time, cut to [-1, 1], into rest shapes; genes are (term, item).
   void add_up(int first, int count, float* angle, float* length) {
     const int items = r_.joints + r_.edges;
     List<float> sum(items);

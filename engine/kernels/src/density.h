@@ -42,6 +42,7 @@ struct Smoothing {
       if (!zero(d)) after = d;
       if (!zero(cells - d)) before = d;
     }
+    // Weights that reach around the box would overlap themselves: each cell then counts once.
     if (before + after + 1 >= cells) before = 0, after = cells - 1;
     smooth = Floats(room()), slope = Floats(room());
     for (int i = 0; i < count(); i++) {
@@ -77,7 +78,8 @@ class Density {
     return p;
   }
 
-  // Take the density of all nodes in a member's rows, and smooth these.
+  // Add up the density of all nodes in a member's rows, and smooth these rows. Each member reads
+  // all nodes in one order, so that a cell's sum does not depend on the number of members.
   void deposit(const List<Place>& places, const Member& me) {
     const Range rows = me.part(height_);
     clear(rows);
@@ -136,7 +138,7 @@ class Density {
     float smooth, slope;
   };
 
-  // Take away what was touched in the step before.
+  // Clear the rows that nodes occupied in the step before, instead of the whole plane.
   void clear(Range rows) {
     for (int x = rows.from; x < rows.to; x++) {
       if (!occupied_[x]) continue;
@@ -155,11 +157,11 @@ class Density {
     for (int block = 0; block < blocks_; block++) {
       if (!touched_[size_t(x) * blocks_ + block]) continue;
       for (int y = block * BLOCK; y < (block + 1) * BLOCK; y++) {
-        const float found = density_[x * row_ + y];
-        if (found == 0) continue;
+        const float density = density_[x * row_ + y];
+        if (density == 0) continue;
         for (int i = 0; i < along.room(); i += LANES) {
-          store(smooth + y + i, load(smooth + y + i) + found * load(along.smooth + i));
-          store(slope + y + i, load(slope + y + i) + found * load(along.slope + i));
+          store(smooth + y + i, load(smooth + y + i) + density * load(along.smooth + i));
+          store(slope + y + i, load(slope + y + i) + density * load(along.slope + i));
         }
       }
     }

@@ -31,26 +31,26 @@ class Energy {
   // Take energy at the points, then let the rest spread. The coverage of cells by points is known.
   void collect(const Points& p, Lattice& l, const Member& me) {
     const Band& band = l.bands[me.number];
-    const bool consumed = r_.parameters[ENERGY_RATE] > 0, spreads = r_.parameters[DIFFUSION] > 0;
+    const bool consumed = r_.parameters[ENERGY_RATE] >= 0, spreads = r_.parameters[DIFFUSION] > 0;
     if (consumed) {
       consume(l, band);
-      me.wait();
+      me.wait();  // A node reads what its cells give from the bands of other members.
     }
     const Range nodes = me.part(r_.nodes);
     for (int n = nodes.from; n < nodes.to; n++) {
       if (!r_.present[n]) continue;
-      float found = 0;
+      float taken = 0;
       for (int layer = 0; layer < r_.layers; layer++)
-        found +=
+        taken +=
             at(p.window(layer * b_.node_slots + b_.node_slot[n]), l, consumed ? taken_ : field_);
-      collected[n] = collected[n] + found / float(r_.layers);
+      collected[n] = collected[n] + taken / float(r_.layers);
     }
     me.wait();
     if (spreads) {
       diffuse(l, band);
-      me.wait();
+      me.wait();  // Neighbours of a band read the old field.
       if (me.first()) std::swap(field_, next_);
-      me.wait();
+      me.wait();  // Every member goes on with the new one.
     }
     if (consumed || spreads) continue_rows(l, band);
   }

@@ -19,8 +19,8 @@ class Numbers {
   explicit Numbers(const ffi::Dictionary& given) : given_(given) {}
 
   int32_t operator()(const char* name) {
-    const auto found = given_.get<int32_t>(name);
-    if (found.has_value()) return *found;
+    const auto number = given_.get<int32_t>(name);
+    if (number.has_value()) return *number;
     error = std::string("there is no number ") + name;
     return 0;
   }
@@ -39,6 +39,7 @@ ffi::Error each_world(Arrays& arrays, const Given& given, Work work) {
   if (!arrays.error.empty()) return invalid(arrays.error);
   for (int64_t world = 0; world < arrays.worlds(); world++) {
     arrays.point(world);
+    // References may differ between the worlds of a batch, so each world is checked.
     if (!sound(given)) return invalid("the body or the network refers to what it lacks");
     try {
       work();

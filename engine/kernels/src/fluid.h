@@ -61,6 +61,7 @@ struct Rates {
   static constexpr float REST = 4.0f / 9, STRAIGHT = 1.0f / 9, DIAGONAL = 1.0f / 36;
   Rates(float viscosity, bool fixed_magic) {
     const float even_time = 3 * viscosity + 0.5f, excess = even_time - 0.5f;
+    // See `fluid.capped_magic`: 3/16, lowered so that the odd time is at most 1.
     const float capped = 0.5f * excess < 0.1875f ? 0.5f * excess : 0.1875f;
     const float odd_time = (fixed_magic ? 0.1875f : capped) / excess + 0.5f;
     const float odd = 1 / odd_time;
@@ -83,6 +84,7 @@ INLINE Vec collide(Vec* f, Vec fx, Vec fy, const Rates& k) {
   const Vec volume = 1.0f / (1.0f + deviation);
   Vec ux = jx * volume, uy = jy * volume;
   const Vec square = ux * ux + uy * uy;
+  // The velocity of Guo's scheme is that at the half step: half of the force has acted.
   if (FORCED) {
     jx = jx + 0.5f * fx, jy = jy + 0.5f * fy;
     ux = jx * volume, uy = jy * volume;
@@ -133,6 +135,7 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
         before[9];  // The populations of the first vector of the row, and of the one before.
     auto collided = [&](size_t y, Vec* f) __attribute__((always_inline)) {
       for (int i = 0; i < 9; i++) f[i] = load(r + i * P + y);
+      // Lanes beyond the row hold what earlier steps stored there: they must not be the fastest.
       if (!FILLED && y == end)
         for (int i = 0; i < 9; i++) f[i] = (Vec)((Ints)f[i] & inside);
       if (DRIVE == VARIED)
@@ -145,9 +148,10 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
         square = collide<true>(f, fx, fy, k);
       } else
         square = collide<DRIVE != UNDRIVEN>(f, push_x, push_y, k);
-      fastest = most(square, fastest);  // Ignores NaN.
+      fastest = most_or_nan(square, fastest);
       store(r + y, f[0]);
       store(u2 + y, f[2]);
+      // What the row before sent here is stored only now, after this cell has been read.
       store(r + P + y, load(t1 + y)), store(t1 + y, f[1]);
       store(r + 5 * P + y, load(t5 + y)), store(r + 7 * P + y, load(t7 + y));
     };
@@ -171,9 +175,8 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
       r[3 * P] = before[3][last], t5[0] = before[5][last], u8[0] = before[8][last];
     }
   }
-  Most found;
-  found.add(0, fastest);
-  band.fastest = found.total();
+  band.fastest = 0;
+  for (int i = 0; i < LANES; i++) band.fastest = most_or_nan(fastest[i], band.fastest);
 }
 
 // Take what has streamed into a band from those beside it.

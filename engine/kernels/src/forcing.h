@@ -24,7 +24,7 @@ struct Forcing {
   void find(const Bodies& b, Points& p, Lattice& l, const Rollout& r, const Member& me) {
     const float limit = r.parameters[FORCE_LIMIT], *lengths = r.parameters + STEP_LENGTHS;
     cover(p, l, me);
-    me.wait();
+    me.wait();  // A point's window lies in the bands of several members.
     relaxation(p, l, beta, me);
     const Range bodies = me.share.bodies;
     for (int body = bodies.from; body < bodies.to; body++)
@@ -33,16 +33,17 @@ struct Forcing {
       for (float* one : {x + i, y + i, reached_x_ + i, reached_y_ + i}) store(one, Vec{});
     });
     for (int n = 0; n < r.iterations; n++) {
-      if (n) {
-        me.wait();
+      if (n) {  // Nothing is forced yet in the first iteration: there is nothing to spread.
+        me.wait();  // A cell adds the forcing of points of all members,
         spread(p, l, x, y, me);
-        me.wait();
+        me.wait();  // and a point reads cells of all bands.
         interpolate<true>(p, l, l.force, reached_x_, reached_y_, me);
       }
       for (int body = bodies.from; body < bodies.to; body++)
         improve(b, b.bodies[body], frames_[body], p, r, lengths[n]);
     }
     for (int body = bodies.from; body < bodies.to; body++) {
+      // One factor for all points of a body, so that sums of force and torque stay zero.
       Most largest;
       each_point(b, b.bodies[body], r, [&](int i, int part) __attribute__((always_inline)) {
         const Vec fx = load(x + i), fy = load(y + i);

@@ -1,4 +1,5 @@
-// Elementary functions on vectors, elementwise and without the C library.
+// Elementary functions on vectors, elementwise and without the C library, whose versions round
+// differently. `portable` has the same for JAX.
 #pragma once
 #include "vectors.h"
 
@@ -42,7 +43,8 @@ INLINE void sine_cosine_far(float x, float& sine, float& cosine) {
     return;
   }
   const double turns = x * 0.63661977236758134;
-  const double k = (turns + 6755399441055744.0) - 6755399441055744.0;  // The nearest whole number.
+  // 1.5 * 2^52: where doubles are whole numbers, the addition rounds to the nearest.
+  const double k = (turns + 6755399441055744.0) - 6755399441055744.0;
   Vec s, c;
   sine_cosine(all(float((x - k * 1.5707963267948966) - k * 6.123233995736766e-17)), s, c);
   const int quarter = int(k - 4 * double(int64_t(k / 4))) & 3;
@@ -52,6 +54,7 @@ INLINE void sine_cosine_far(float x, float& sine, float& cosine) {
 
 // Sine and cosine of any angles; beyond 8192 rad lane by lane.
 INLINE void sine_cosine_any(Vec x, Vec& sine, Vec& cosine) {
+  // Up to here multiples of the first two parts of a quarter turn are exact, as Cephes demands.
   constexpr float NEAR = 8192;
   sine_cosine(x, sine, cosine);
   const Ints far = absolute(x) > NEAR;

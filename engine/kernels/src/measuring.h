@@ -5,7 +5,7 @@
 
 namespace microcosmos::ISA {
 
-// Of each node in a step: the factor that shortened its displacement, and its length.
+// The factor that shortened each node's displacement in a step, and the length that is left.
 struct Motion {
   Floats shortened, moved;
   explicit Motion(const Bodies& b) : shortened(b.node_slots + BLOCK), moved(b.node_slots + BLOCK) {}
@@ -37,7 +37,7 @@ class Measuring {
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
       add_up(t, body, n, f, m);
     measure_edges(n, me.share.edges);
-    me.wait();
+    me.wait();  // Joints read lengths of all edges, and `finish` the sums of all bodies.
     trace(t, n, me);
     if (me.first()) finish(t);
   }
@@ -72,7 +72,7 @@ class Measuring {
   }
 
   float total(int one) const {
-    Sum sum;
+    Sum sum;  // Over bodies, not over members: their number must not change a bit.
     each(0, r_.bodies, [&](int i, int part) __attribute__((always_inline)) {
       sum.add(part, load(sums_[one] + i));
     });
@@ -110,9 +110,9 @@ class Measuring {
       const Vec angle = wrapped(gather(n.angle, other, false) - gather(n.angle, one, false));
       const Vec lengths = gather(length_, one, false) + gather(length_, other, false);
       const Vec here = gather(edge_here, one, false) * gather(edge_here, other, false);
-      const Vec found = here > 0.0f ? 2.0f * angle / lengths : Vec{};
+      const Vec bend = here > 0.0f ? 2.0f * angle / lengths : Vec{};
       for (int l = 0; l < LANES; l++)
-        if (item[l] >= 0) out[item[l]] = found[l];
+        if (item[l] >= 0) out[item[l]] = bend[l];
     });
   }
 

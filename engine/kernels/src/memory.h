@@ -28,6 +28,7 @@ class Array {
  public:
   Array() = default;
   explicit Array(size_t count) {
+    // At least a line of a cache more than asked for: an empty array has memory too.
     const size_t bytes = (count * sizeof(T) + 127) / 64 * 64;
     data_ = static_cast<T*>(std::aligned_alloc(64, bytes));
     if (!data_) no_memory();
@@ -50,7 +51,7 @@ class Array {
 };
 using Floats = Array<float>;
 
-// Counts what lists take.
+// The allocator of lists, which counts their bytes.
 template <class T>
 struct Counted {
   using value_type = T;
@@ -58,9 +59,9 @@ struct Counted {
   template <class U>
   Counted(const Counted<U>&) {}
   T* allocate(size_t count) {
-    T* found = std::allocator<T>().allocate(count);
+    T* data = std::allocator<T>().allocate(count);
     held += int64_t(count * sizeof(T));
-    return found;
+    return data;
   }
   void deallocate(T* data, size_t count) {
     std::allocator<T>().deallocate(data, count);

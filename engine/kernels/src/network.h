@@ -46,6 +46,7 @@ class Network {
     for (int row : order(r, into)) {
       if (r.activation[row] < 0) continue;  // An input, or no node.
       Unit unit = {row, r.activation[row], r.bias[row], int(source_.size()), 0};
+      // By source, not by place in the genome: JAX adds in that order too.
       std::sort(into[row].begin(), into[row].end(), [&](int a, int b) {
         return std::make_pair(r.source[a], a) < std::make_pair(r.source[b], b);
       });
@@ -85,16 +86,17 @@ class Network {
   Floats values;  // (row, point)
 
  private:
-  static constexpr float BOUND = 1e6f;
+  static constexpr float BOUND = 1e6f;  // As in `genomes.cppn`: chains of squares would overflow.
   struct Unit {
     int row, activation;
     float bias;
     int from, to;  // Connections.
   };
 
-  // Rows by the length of the longest path to them; any order where all are computed together.
+  // Return rows by the length of the longest path to them, so that sources come first. A recurrent
+  // network computes all rows from the values before: any order will do.
   List<int> order(const Rollout& r, const List<List<int>>& into) const {
-    List<int> depth(rows_), found(rows_);
+    List<int> depth(rows_), sorted(rows_);
     bool changed = !recurrent_;
     for (int n = 0; n < rows_ && changed; n++) {
       changed = false;
@@ -102,9 +104,10 @@ class Network {
         for (int c : into[row])
           if (depth[row] <= depth[r.source[c]]) depth[row] = depth[r.source[c]] + 1, changed = true;
     }
-    for (int row = 0; row < rows_; row++) found[row] = row;
-    std::stable_sort(found.begin(), found.end(), [&](int a, int b) { return depth[a] < depth[b]; });
-    return found;
+    for (int row = 0; row < rows_; row++) sorted[row] = row;
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](int a, int b) { return depth[a] < depth[b]; });
+    return sorted;
   }
 
   int rows_, points_ = 0;

@@ -97,10 +97,12 @@ inline void first_cells(Range slots, const float* positions, float* share, int32
     x = x > -FAR ? x : all(-FAR);
     x = x < FAR ? x : all(FAR);
     const Vec m = x - margin;
+    // Conversion rounds towards zero; the comparison makes it the floor.
     Ints b = __builtin_convertvector(m, Ints);
     b = b + (__builtin_convertvector(b, Vec) > m);
     const Vec floor = __builtin_convertvector(b, Vec);
     store(share + i, x - floor);
+    // The quotient may be one off by rounding, which the two corrections below mend.
     b = b - __builtin_convertvector(floor * inverse, Ints) * size;
     b = b + ((b < 0) & size);
     b = b - ((b >= size) & size);
@@ -197,7 +199,7 @@ inline __attribute__((noinline)) void touch(const Points& p, Lattice& l, Band& b
 // Find windows and their weights, and the blocks of cells that they touch.
 inline void find_windows(Points& p, Lattice& l, const Weights& delta, const Member& me) {
   weigh(p, l, delta, me);
-  me.wait();
+  me.wait();  // A band looks at the windows of all points.
   touch(p, l, l.bands[me.number]);
 }
 
@@ -212,9 +214,9 @@ __attribute__((noinline)) void interpolate(const Points& p, const Lattice& l, co
     const int slot = window.slot;
     Vec8 sum = {};
     each_row(window, l, [&](int i, int32_t row) __attribute__((always_inline)) {
-      Vec8 found = load<Vec8>(pairs + 2 * size_t(row));
-      if (DIVIDED) found = found * twice(load<Vec4>(l.volume + row));
-      sum = sum + w[i] * found;
+      Vec8 values = load<Vec8>(pairs + 2 * size_t(row));
+      if (DIVIDED) values = values * twice(load<Vec4>(l.volume + row));
+      sum = sum + w[i] * values;
     });
     sum = sum * twice(load<Vec4>(w + 4));
     const Vec4 t = __builtin_shufflevector(sum, sum, 0, 1, 2, 3) +
@@ -223,7 +225,7 @@ __attribute__((noinline)) void interpolate(const Points& p, const Lattice& l, co
   });
 }
 
-// Whether a row of a window, by its first cell in memory, is in a band.
+// Test whether a row of a window, by its first cell in memory, is in a band.
 struct Inside {
   uint32_t start, cells;
   Inside(const Lattice& l, const Band& band)
@@ -252,6 +254,7 @@ inline __attribute__((noinline)) void spread(const Points& p, Lattice& l, const 
       store(g, load<Vec8>(g) + w[i] * value);
     });
   }
+  // Cells beyond the edge are the first of the row: both copies get the sum.
   for (int n = 0; n < band.beyond_rows; n++) {
     float *g = l.force + 2 * l.wide * band.beyond[n], *beyond = g + 2 * l.width;
     for (int i = 0; i < 6; i++) beyond[i] = g[i] = g[i] + beyond[i];

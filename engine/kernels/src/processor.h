@@ -1,4 +1,4 @@
-// What the processor can do.
+// The instruction set of the processor.
 #pragma once
 
 #if defined(__x86_64__)

@@ -29,11 +29,11 @@ class Repulsion {
     const Range mine = parts_[me.number];
     for (int i = mine.from; i < mine.to; i++)
       places_[i] = density_.place(n.x[order_[i]], n.y[order_[i]]);
-    me.wait();
+    me.wait();  // A row adds up nodes of all members,
     density_.deposit(places_, me);
-    me.wait();
+    me.wait();  // columns pass through rows of all members,
     density_.differentiate(me);
-    me.wait();
+    me.wait();  // and a node reads gradients of all rows.
     const float strength = -r_.parameters[REPULSION];
     for (int i = mine.from; i < mine.to; i++) {
       float gx, gy;
@@ -69,6 +69,7 @@ class Repulsion {
       most_turned = largest.total(), sum = squares.total();
     }
     capped(body, n, f, rigid, limit);
+    // The cap has changed the sums, so the rigid part goes a second time.
     const Rigid rest = rigid_part(body, n, f);
     remove(body, n, f, rest);
     if (r_.bodies > 1) drift(body, n, f, rigid, most_turned, sum);
@@ -96,14 +97,14 @@ class Repulsion {
       const Vec h = load(n.here + i);
       sx.add(part, h * load(push_x + i)), sy.add(part, h * load(push_y + i));
     });
-    Rigid found = {sx.total() / f.nodes, sy.total() / f.nodes, 0};
+    Rigid rigid = {sx.total() / f.nodes, sy.total() / f.nodes, 0};
     each(body.from, body.to, [&](int i, int part) __attribute__((always_inline)) {
       const Vec x = load(n.x + i) - f.x, y = load(n.y + i) - f.y;
-      const Vec ex = load(push_x + i) - found.x, ey = load(push_y + i) - found.y;
+      const Vec ex = load(push_x + i) - rigid.x, ey = load(push_y + i) - rigid.y;
       turning.add(part, load(n.here + i) * (x * ey - y * ex));
     });
-    found.spin = turning.total() / f.inertia;
-    return found;
+    rigid.spin = turning.total() / f.inertia;
+    return rigid;
   }
 
   void remove(Range body, const Nodes& n, const Frame& f, const Rigid& rigid) {
@@ -114,7 +115,7 @@ class Repulsion {
     });
   }
 
-  // Displacements without the rigid motion, at most `limit` long.
+  // Remove the rigid motion from displacements, then shorten each to `limit`.
   void capped(Range body, const Nodes& n, const Frame& f, const Rigid& rigid, float limit) {
     remove(body, n, f, rigid);
     each(body.from, body.to, [&](int i, int) __attribute__((always_inline)) {
@@ -124,7 +125,7 @@ class Repulsion {
     });
   }
 
-  // The translation of a body by contact, and its rotation, both limited; see `nodes._turned`.
+  // Find the translation and the rotation of a body by contact, both limited; see `nodes._turned`.
   void drift(Range body, const Nodes& n, const Frame& f, const Rigid& rigid, float most_turned,
              float sum) {
     const float limit = r_.parameters[REPULSION_LIMIT];

@@ -1,4 +1,4 @@
-// What a rollout of one world takes and returns: plain arrays, the same for every caller.
+// The operands and results of a rollout of one world: plain arrays, the same for every caller.
 #pragma once
 #include <cstdint>
 
@@ -6,10 +6,10 @@ namespace microcosmos {
 
 enum Projection { NOTHING, FORCE, FORCE_AND_TORQUE };
 enum Delta { PESKIN, ROMA, HAT };
-// Where rest shapes come from: they are given, or a controller commands them.
+// Sources of rest shapes: the caller gives them, or a controller commands them.
 enum Commands { GIVEN, NETWORK, SERIES };
 
-// Parts of a step whose time can be taken.
+// Parts of a step whose time can be taken, in the order of `world.native.PARTS`.
 enum Part {
   CONTROL,
   REPELLING,
@@ -25,7 +25,7 @@ enum Part {
 };
 
 // Places of `parameters`; the step lengths of the forcing follow.
-// An NU_C, ENERGY_RATE or DIFFUSION of 0 is none.
+// None: an infinite NU_C, an ENERGY_RATE below 0, a DIFFUSION of 0.
 enum Parameter {
   VISCOSITY,
   NU_C,

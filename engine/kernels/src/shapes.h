@@ -1,4 +1,4 @@
-// Rest shapes: where rest angles and rest lengths lay out the nodes of a body.
+// Rest shapes: the layout of a body's nodes by rest angles and rest lengths.
 #pragma once
 #include "functions.h"
 #include "nodes.h"
@@ -61,7 +61,7 @@ class Shapes {
     }
   }
 
-  // The directions of a piece's edges.
+  // Find the directions of a piece's edges.
   void turn(size_t number, const float* rest_angle) {
     const Piece& p = b_.pieces[number];
     if (p.chain) {
@@ -89,7 +89,7 @@ class Shapes {
     }
   }
 
-  // The nodes of a piece, from the directions of its edges.
+  // Place the nodes of a piece by the directions of its edges.
   void place(size_t number, const float* rest_length) {
     const Piece& p = b_.pieces[number];
     measure(p, rest_length);
@@ -111,7 +111,7 @@ class Shapes {
     }
   }
 
-  // A filament, from its first node on.
+  // Place the nodes of a filament one after another, which needs no matrix.
   void follow(const Piece& p) {
     const int count = int(p.edge_of.size());
     float at_x = 0, at_y = 0;
@@ -124,7 +124,7 @@ class Shapes {
     }
   }
 
-  // The vectors along edges, from their directions.
+  // Find the vectors along edges from their directions.
   void measure(const Piece& p, const float* rest_length) {
     for (int e : p.edge_of) along_x_[b_.edge_slot[e]] = rest_length[e];
     each(p.edges.from, p.edges.to, [&](int i, int) __attribute__((always_inline)) {
@@ -162,6 +162,7 @@ INLINE void fit(const Piece& p, const Shapes& shape, const float* here, const fl
     cosines.add(part, h * (gx * ax + gy * ay)), sines.add(part, h * (gx * ay - gy * ax));
   });
   float c = cosines.total(), s = sines.total();
+  // A piece of one node has no direction: the constant keeps the division finite.
   const float size = root(c * c + s * s + 1e-24f);
   c = c / size, s = s / size;
   each(p.nodes.from, p.nodes.to, [&](int i, int) __attribute__((always_inline)) {

@@ -87,7 +87,7 @@ class World {
       stop(WINDOWS, me);
       if (r_.fluid) {
         moments(l_, l_.bands[number]);
-        me.wait();
+        me.wait();  // A point reads velocities of all bands.
         stop(MOMENTS, me);
         interpolate<false>(p_, l_, l_.velocity, forcing_.velocity_x, forcing_.velocity_y, me);
         stop(INTERPOLATION, me);
@@ -96,7 +96,7 @@ class World {
       stop(CONSTRAINTS, me);
       if (r_.fluid) {
         forcing_.find(b_, p_, l_, r_, me);
-        me.wait();
+        me.wait();  // A cell adds the final forces of points of all members.
         stop(FORCING, me);
         spread(p_, l_, forcing_.x, forcing_.y, me);
         stop(SPREADING, me);
@@ -105,11 +105,11 @@ class World {
       if (r_.energetic) energy_.collect(p_, l_, me);
       carry(me.share);
       if (r_.observed) measuring_.record(t, n_, forcing_, motion_, me);
-      me.wait();
+      me.wait();  // A member records nodes of other shares, which the next step moves.
       stop(MEASURES, me);
       if (r_.fluid) {
         flow(l_, l_.bands[number], rates_);
-        me.wait();
+        me.wait();  // `join` takes what the neighbouring bands have sent.
         settle(t, me);
         stop(FLUID, me);
       } else if (r_.observed && me.first())
@@ -125,10 +125,11 @@ class World {
     join(l_, l_.bands[(n + count - 1) % count], l_.bands[n], l_.bands[(n + 1) % count]);
     if (r_.observed && me.first()) {
       float fastest = 0;
-      for (const Band& band : l_.bands) fastest = most(band.fastest, fastest);
-      r_.speed[t] = root(fastest + 1e-24f);
+      for (const Band& band : l_.bands) fastest = most_or_nan(band.fastest, fastest);
+      // One NaN, whichever of several was met first: that depends on the bands.
+      r_.speed[t] = fastest >= 0 ? root(fastest + 1e-24f) : __builtin_nanf("");
     }
-    if (r_.walled) me.wait();
+    if (r_.walled) me.wait();  // A wall link may cross bands: both must have been joined.
     surroundings_.act(l_, me);
   }
 
@@ -151,7 +152,7 @@ class World {
     me.wait();
   }
 
-  // The collision and streaming of this world.
+  // Return the collision and streaming for this world, compiled for its forces and its row length.
   void (*chosen_flow() const)(Lattice&, Band&, const Rates&) {
     const bool filled = r_.width % BLOCK == 0;
     if (r_.varied) return filled ? advance<true, VARIED> : advance<false, VARIED>;
@@ -159,7 +160,7 @@ class World {
     return filled ? advance<true, UNDRIVEN> : advance<false, UNDRIVEN>;
   }
 
-  // The rest shape of a step, in closed loop.
+  // Command the rest shape of a step, in closed loop; the first member does it for all.
   void command(int t, const Member& me) {
     if (r_.energetic) sense(me);
     if (me.first()) {
@@ -199,7 +200,7 @@ class World {
     }
   }
 
-  // The points of bodies: their nodes, or two half a cell to either side.
+  // Place the points of bodies at their nodes, or half a cell to either side of them.
   void place_points(const Share& share) {
     constexpr float OFFSET = 0.5f;
     if (r_.layers == 1) {
@@ -280,7 +281,7 @@ class World {
     });
   }
 
-  // The rest angles towards which soft joints turn: they keep the rest of their error.
+  // Return the rest angles towards which soft joints turn; see `filaments.softened`.
   const float* softened(const float* rest_angle, Range pieces) {
     for (int p = pieces.from; p < pieces.to; p++)
       for (int j : b_.pieces[p].joint_of) {

@@ -7,49 +7,17 @@
 #include <vector>
 
 #include "functions.h"
+#include "measures.h"
 
 namespace microcosmos {
 
 constexpr int FRAMES = 64, STROKES = 2, PLACES = 65, LEVELS = 32767;  // `archive.poses`
 
-// Places of the measures, in the order of `search.summary.SUMMARISED`.
-enum Measure {
-  DISPLACEMENT,
-  BENDING_EFFORT,
-  STRETCHING_EFFORT,
-  PATH_LENGTH,
-  STRAIGHTNESS,
-  ROTATION,
-  ENERGY,
-  MACH,
-  LIMITED,
-  REYNOLDS,
-  MEAN_SPEED,
-  TURNING,
-  CURVATURE_MEAN,
-  CURVATURE_SPREAD,
-  SYMMETRY,
-  POWER,
-  EFFICIENCY,
-  NODE_COUNT,
-  SPEED,
-  STRIDE,
-  IMPULSE,
-  COST_OF_TRANSPORT,
-  BEATS,
-  WAVE_NUMBER,
-  WAVE_DIRECTION,
-  HEADING_ANGLE,
-  ASPECT,
-  STROUHAL,
-  ADVANCE,
-  MEASURE_COUNT
-};
 // Places of the other numbers of a summary.
 enum Shown { ORIGIN_X, ORIGIN_Y, SCALE, WINDOW_START, WINDOW_STOP, WINDOW_STROKES, STATUS, SHOWN };
 enum Status { OK, NON_FINITE, SUPERSONIC };
 
-// What a rollout observed, and its summary.
+// The observations of a rollout, and its summary.
 struct Observed {
   int32_t height, width, steps, nodes, edges, joints, bodies, energetic;
   const float* populations[9];                               // (height, width) each, at the end
@@ -111,7 +79,7 @@ class Summary {
 
   static double root(double x) { return __builtin_sqrt(x); }
   static double norm(double x, double y) { return root(x * x + y * y + 1e-24); }
-  // What is no number stays so.
+  // The larger of two numbers; NaN stays NaN.
   static double larger(double a, double b) { return a >= b ? a : b > a ? b : a + b; }
   static double down(double x) {
     const double whole = double(int64_t(x));
@@ -119,17 +87,17 @@ class Summary {
   }
   static bool finite(double x) { return x - x == 0; }
 
-  // The place of the centre after `step` steps, between them too.
+  // Return the place of the centre after `step` steps, interpolated between whole ones.
   double centre(double step, int axis) const {
     const int before = step < m_.steps ? int(step) : m_.steps - 1;
     const double low = before ? m_.centre[2 * (before - 1) + axis] : begun_[axis];
     return low + (step - before) * (m_.centre[2 * before + axis] - low);
   }
 
-  // Strokes done after a number of steps.
+  // Return the strokes done after a number of steps.
   double strokes(int step) const { return step && period_ > 0 ? m_.clock[step - 1] / period_ : 0; }
 
-  // The time at which `done` strokes are done, in steps.
+  // Return the time at which `done` strokes are done, in steps.
   double when(double done) const {
     int low = 0, high = m_.steps;
     while (high - low > 1) {
@@ -139,7 +107,7 @@ class Summary {
     const double before = strokes(low), passed = strokes(high) - before;
     if (!(passed > 0)) return high;
     const double share = (done - before) / passed;
-    return low + (share > 0 ? std::min(share, 1.0) : 0);  // What is no number counts as 0.
+    return low + (share > 0 ? std::min(share, 1.0) : 0);  // NaN counts as 0.
   }
 
   // Find the last two whole strokes, as in `search.window`.
@@ -153,7 +121,7 @@ class Summary {
     if (start_ >= stop_) start_ = stop_ - 1;
   }
 
-  // Of whole 64ths of a turn, from those of halved angles.
+  // Find the cosines of whole 64ths of a turn from those of halved angles, without the C library.
   void cosines() {
     double c = 0;  // Of a quarter turn, then of an eighth, ...
     for (int part = 4; part < FRAMES; part *= 2) c = root((1 + c) / 2);
@@ -166,7 +134,7 @@ class Summary {
     }
   }
 
-  // The step of a frame, from 0.
+  // Return the step of a frame, from 0.
   int frame(int64_t number) const {
     const int64_t passed = (number + 1) * (stop_ - start_);
     const int64_t done = start_ + (2 * passed + FRAMES) / (2 * FRAMES);
@@ -208,11 +176,11 @@ class Summary {
     found_[MACH] = fastest * SOUND;
     const double pace = found_[DISPLACEMENT] / m_.steps;
     found_[EFFICIENCY] = power > TINY ? viscosity_ * pace * pace / power : power - power;
-    found_[NODE_COUNT] = nodes_;
+    found_[NODES] = nodes_;
     for (int n = 0; n < m_.nodes && m_.energetic; n++) found_[ENERGY] += m_.collected[n];
   }
 
-  // The squared changes of rest shapes from one step to the next.
+  // Return the sum of squared changes of rest shapes from one step to the next.
   double changed(const float* rest, const Doubles& here) const {
     Doubles sums(here.size());
     const size_t count = here.size();
@@ -237,7 +205,7 @@ class Summary {
     found_[STRETCHING_EFFORT] = changed(m_.rest_length, edge_here_);
   }
 
-  // Mean and standard deviation of the size of the curvature.
+  // Find the mean and the standard deviation of the size of the curvature.
   void curvature() {
     const size_t J = joint_here_.size();
     for (double here : joint_here_) joints_ += here;
@@ -293,7 +261,7 @@ class Summary {
       }
   }
 
-  // Speed, stride, advance along x and cost of transport, over whole strokes after the first.
+  // Find speed, stride, advance along x and cost of transport over whole strokes after the first.
   void swimming() {
     const bool swam = done_ >= 2;
     const double from = swam ? when(1) : 0, to = swam ? when(done_) : m_.steps;
@@ -312,7 +280,7 @@ class Summary {
     found_[COST_OF_TRANSPORT] = spent / larger(lengths, 1e-3);
   }
 
-  // Beats, wave number and direction of the curvature in the window; see `kinematics.waves`.
+  // Find beats, wave number and direction of the curvature in the window; see `measures.waves`.
   void waves() {
     const int J = m_.joints;
     Doubles change(size_t(FRAMES) * J), mean(J), real(J), imaginary(J), best, other;
@@ -364,7 +332,7 @@ class Summary {
 
   static double angle(double y, double x) { return arctangent(all(float(y)), all(float(x)))[0]; }
 
-  // The body's axes and its excursion across its path, in the window.
+  // Find the body's axes and its excursion across its path, in the window.
   void shape() {
     const int N = m_.nodes;
     double xx = 0, yy = 0, xy = 0, swung = 0;
@@ -396,7 +364,7 @@ class Summary {
     found_[STROUHAL] = window_ * swung / larger(distance, 1e-3 * length_);
   }
 
-  // Positions about the middle of their range, in units that fit 16 bits.
+  // Store positions about the middle of their range, in units that fit 16 bits.
   void poses() {
     constexpr float ENDLESS = __builtin_inff();
     const int N = m_.nodes;
@@ -417,6 +385,7 @@ class Summary {
         float units = (m_.path[2 * size_t(frame(f)) * N + i] - origin[i & 1]) / scale;
         units = units > LEVELS ? LEVELS : units > -LEVELS ? units : -LEVELS;
         m_.frames[2 * size_t(f) * N + i] =
+            // Adding 1.5 * 2^23 rounds to the nearest whole number.
             m_.present[i / 2] ? (units + 12582912.0f) - 12582912.0f : 0.0f;
       }
     m_.shown[ORIGIN_X] = origin[0], m_.shown[ORIGIN_Y] = origin[1], m_.shown[SCALE] = scale;
@@ -424,7 +393,7 @@ class Summary {
     m_.shown[WINDOW_STROKES] = float(window_);
   }
 
-  // The flow at the end counts too, without the half step of force.
+  // Return the status of the motion; the flow at its end counts, without the half step of force.
   Status status() const {
     const float* const* f = m_.populations;
     float fastest = 0;

@@ -21,7 +21,7 @@ class Surroundings {
     const Range links = me.part(links_.size());
     for (int i = links.from; i < links.to; i++)
       l.populations[links_[i].fluid] = l.populations[links_[i].wall];
-    if (!links_.empty()) me.wait();
+    if (!links_.empty()) me.wait();  // A link reads its wall cell before that is emptied.
     const Band& band = l.bands[me.number];
     const Range walls = within(walls_, l, band), blocks = within(blocks_, l, band);
     for (int n = walls.from; n < walls.to; n++)
@@ -46,7 +46,7 @@ class Surroundings {
     size_t fluid, wall;
   };
 
-  // The cells, in ascending order, that are in a band.
+  // Return the range of those cells, which ascend, that are in a band.
   static Range within(const List<size_t>& cells, const Lattice& l, const Band& band) {
     auto before = [&](int row) {
       return int(std::lower_bound(cells.begin(), cells.end(), row * l.row) - cells.begin());
@@ -54,7 +54,7 @@ class Surroundings {
     return {before(band.from), before(band.to)};
   }
 
-  // The force in each cell, with the uniform one.
+  // Add the uniform force to that of each cell, so that a collision reads one of them.
   void find_forces(const Rollout& r, Lattice& l) {
     l.pushes_x = Floats(l.row * l.height), l.pushes_y = Floats(l.row * l.height);
     for (int x = 0; x < r.height; x++)
@@ -83,7 +83,8 @@ class Surroundings {
       }
   }
 
-  // The blocks that the sponge reaches, and the equilibrium of its stream at rest density.
+  // Find the blocks that the sponge reaches, and the equilibrium of its stream at rest density. A
+  // first pass counts the blocks, a second one stores their strengths.
   void find_sponge(const Rollout& r, const Lattice& l) {
     for (int pass = 0; pass < 2; pass++) {
       if (pass) strength_ = Floats(blocks_.size() * BLOCK), blocks_.clear();

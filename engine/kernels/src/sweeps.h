@@ -10,9 +10,8 @@ class Sweeps {
   Sweeps(const Bodies& b, const Rollout& r) : b_(b), r_(r) {
     for (Floats* one : {&rest_angle_, &rest_length_, &bend_, &stretch_, &shear_})
       *one = Floats(b.edge_slots + BLOCK);
-    // In a viscous fluid actuators may be weaker.
-    const float nu_c = r.parameters[NU_C];
-    const float strength = nu_c > 0 ? 0.5f / (1 + r.parameters[VISCOSITY] / nu_c) : 0.5f;
+    // Each partner corrects half of an error. In a viscous fluid actuators may be weaker.
+    const float strength = 0.5f / (1 + r.parameters[VISCOSITY] / r.parameters[NU_C]);
     for (int p : b.filaments) {
       const Piece& piece = b.pieces[p];
       place(piece.joint_of, piece, r.bend, strength, bend_);
@@ -83,15 +82,15 @@ class Sweeps {
   }
 
  private:
-  // The values of a filament's joints or edges by slots; a joint has that of its first edge.
+  // Store values of a filament's joints or edges by slots; a joint has the slot of its first edge.
   void place(const List<int32_t>& items, const Piece& piece, const float* values, float factor,
              float* out) {
     for (size_t k = 0; k < items.size(); k++)
       out[b_.edge_slot[piece.edge_of[k]]] = factor * values[items[k]];
   }
 
-  // All sweeps of one filament in registers: N vectors each of even and of odd nodes and edges.
-  // Even joints and edges join the lanes of both, odd ones an odd lane and the next even one.
+  // Carry out all sweeps of one filament in registers: N vectors each of even and of odd nodes and
+  // edges. Even constraints join the lanes of both, odd ones an odd lane and the next even one.
   template <int N>
   __attribute__((noinline)) void filament(const Piece& piece, Nodes& n) {
     const int even = piece.nodes.from, odd = even + N * LANES;
@@ -117,6 +116,7 @@ class Sweeps {
         const Vec t = load(bend_ + at) * wrapped((to[i] - te[i]) - load(rest_angle_ + at));
         te[i] = te[i] + t, to[i] = to[i] - t;
       }
+      // An odd joint joins an odd edge and the next even one, whose turn is thus one lane later.
       for (int i = 0; i < N; i++) dx[i] = Vec{};
       for (int i = 0; i < N && i * LANES < edges; i++) {
         const int at = odd_edge + i * LANES;
@@ -144,7 +144,8 @@ class Sweeps {
     }
   }
 
-  // Correct lengths along the tangent, and shear to the director: the first end's displacement.
+  // Return the first end's displacement: along the tangent to the rest length, and by shear towards
+  // the director.
   INLINE void pull(Vec vx, Vec vy, Vec angle, int slot, Vec& dx, Vec& dy) {
     correct(vx, vy, angle, load(rest_length_ + slot), load(stretch_ + slot), load(shear_ + slot),
             dx, dy);
@@ -171,6 +172,7 @@ class Sweeps {
       const int32_t *one = &pairs.first[i], *other = &pairs.second[i], *item = &pairs.item[i];
       const Vec a = gather(n.angle, one, adjacent), b = gather(n.angle, other, adjacent);
       const Vec turn = load(share + i) * wrapped((b - a) - load(rest + i));
+      // The second before the first, see `Pairs::consecutive`.
       scatter(n.angle, other, item, adjacent, b - turn);
       scatter(n.angle, one, item, adjacent, a + turn);
     });

@@ -1,7 +1,7 @@
-// Threads that take each part of a step together.
+// Teams of threads that take each part of a step together.
 //
-// Every thread runs the same program on its own share: rows of cells, and whole bodies. What one
-// writes and another reads lies on both sides of a `wait`. No sum depends on how many there are.
+// Every thread runs the same program on its own share: rows of cells, and whole bodies. A `wait`
+// stands between what one thread writes and another reads. No sum depends on their number.
 #pragma once
 #if !defined(__wasm__)
 #include <atomic>
@@ -33,7 +33,7 @@ class Team {
     try {
       while (int(threads_.size()) < size - 1)
         threads_.emplace_back(&Team::serve, this, threads_.size() + 1);
-    } catch (const std::system_error&) {
+    } catch (const std::system_error&) {  // Results do not depend on the number: go on with fewer.
     }
     size_ = 1 + int(threads_.size());
   }
@@ -60,6 +60,7 @@ class Team {
     if (size_ == 1) return;
     const int turn = turn_.load(std::memory_order_acquire);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) == size_ - 1) {
+      // Before the turn: whom it releases may arrive at the next `wait` at once.
       arrived_.store(0, std::memory_order_relaxed);
       turn_.store(turn + 1, std::memory_order_release);
     } else

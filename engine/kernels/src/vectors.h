@@ -1,7 +1,8 @@
 // Vectors of LANES floats, by the compilers' own extension, and sums over them.
 //
 // Everything is elementwise, and a sum has one order whatever LANES is: 16 partial sums, then a
-// tree. So without contraction the bits depend neither on the instruction set nor on the compiler.
+// tree. So without contraction the bits depend neither on the instruction set nor on the compiler
+// (`tests/engine/world/test_native_bits.py`).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -33,11 +34,12 @@ constexpr int LANES = 8;
 #else
 constexpr int LANES = 4;
 #endif
-constexpr int BLOCK = 16;  // Cells and slots come in blocks of 16.
+constexpr int BLOCK = 16;  // Cells and slots come in blocks of the widest vector.
 constexpr int PARTS = BLOCK / LANES;
 
 typedef float Vec __attribute__((vector_size(4 * LANES)));
 typedef int32_t Ints __attribute__((vector_size(4 * LANES)));
+typedef uint32_t Words __attribute__((vector_size(4 * LANES)));
 typedef float Vec4 __attribute__((vector_size(16)));
 typedef float Vec8 __attribute__((vector_size(32)));
 
@@ -106,9 +108,16 @@ template <class V>
 INLINE V most(V a, V b) {
   return a > b ? a : b;
 }
+// The larger of two numbers from 0 on; NaN stays NaN. As whole numbers without a sign such floats
+// keep their order, and NaN of either sign is above them all.
+INLINE Vec most_or_nan(Vec a, Vec b) {
+  const Words x = (Words)a, y = (Words)b;
+  return (Vec)(x > y ? x : y);
+}
+INLINE float most_or_nan(float a, float b) { return a >= b ? a : b > a ? b : a + b; }
 INLINE Vec absolute(Vec a) { return (Vec)((Ints)a & 0x7fffffff); }
 // Nearest whole number, by the rounding of floats; for |a| below 2^22.
-INLINE Vec nearest(Vec a) { return (a + 12582912.0f) - 12582912.0f; }
+INLINE Vec nearest(Vec a) { return (a + 12582912.0f) - 12582912.0f; }  // 1.5 * 2^23.
 INLINE Vec wrapped(Vec angle) { return angle - 6.2831855f * nearest(angle * 0.15915494f); }
 
 // A sum, or the largest value, over blocks of slots.
@@ -128,10 +137,10 @@ struct Most {
   Vec parts[PARTS] = {};
   INLINE void add(int part, Vec v) { parts[part] = most(v, parts[part]); }
   INLINE float total() const {
-    float f[BLOCK], found = 0;
+    float f[BLOCK], largest = 0;
     memcpy(f, parts, sizeof f);
-    for (float one : f) found = one > found ? one : found;
-    return found;
+    for (float one : f) largest = one > largest ? one : largest;
+    return largest;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "calls.h"
+#include "crossing.h"
 #include "step.h"
 
 #define PAGE(name) __attribute__((import_module("page"), import_name(#name)))
@@ -91,4 +92,13 @@ EXPORT(summarise) void call_summarise() {
   name_summary(arrays, o);
   require_sound(o);
   ISA::Summary(o).write();
+}
+
+EXPORT(cross) void call_cross() {
+  Crossing c = {};
+  Arrays arrays;
+  require(read_crossing(c, Numbers()));
+  name_crossing(arrays, c);
+  require_sound(c);
+  write(c);
 }

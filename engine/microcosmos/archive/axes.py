@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import exact
-from ..spec.measures import MEASURES, Measure, Scale
+from ..measures import MEASURES, Measure, Scale
 
 BINS = 24
 """Bins of an axis that is not an archive's own, as on the page."""
@@ -68,7 +68,8 @@ def axis(
 def floors(names: Sequence[str]) -> tuple[float, ...]:
     """Return the least value of each measure that enters as a logarithm, 0 for the others.
 
-    It is a hundredth of the lower end of the measure's own axis.
+    It is a hundredth of the lower end of a built-in measure's own axis. Those of plug-ins enter
+    as they are: creatures of several runs may be on other axes.
     """
     known = (MEASURES.get(name) for name in names)
     return tuple(one.low / 100 if one and one.scale == "log10" else 0.0 for one in known)

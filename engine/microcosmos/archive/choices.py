@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, ValidationError
 
-from ..spec.base import Digest, Part, field_path
+from ..spec.base import Digest, Part, invalid_fields
 from ..spec.creature import CreatureError
+from .creature import decoded
 from .creature import parse as parse_creature
 
 Files = list[dict[str, Any]]
@@ -40,14 +41,20 @@ def parse(data: bytes) -> dict[int, Files]:
     Raises `ValueError`, which names the field, what was needed and what came.
     """
     try:
-        found = TypeAdapter(Document).validate_json(data)
+        found = Document.model_validate(decoded(data))
     except ValidationError as error:
-        first = error.errors()[0]
-        field, needed = field_path(first["loc"]), first["msg"].removeprefix("Input should be ")
-        if first["type"] == "missing":
-            needed = "a value"
-        raise CreatureError(field or "file", needed, first["input"]) from None
-    files = {one["sha256"]: one for one in map(parse_creature, found.creatures)}
+        found = invalid_fields(error.errors())[0]
+        needed = found.needed or found.reason
+        raise CreatureError(found.field or "file", needed, found.got, found.reason) from None
+    files: dict[str, dict[str, Any]] = {}
+    for place, one in enumerate(found.creatures):
+        try:
+            file = parse_creature(one)
+        except CreatureError as error:
+            raise error.within(f"creatures.{place}") from error
+        if file["sha256"] in files:  # Two files of a creature may differ in all but its genes.
+            raise CreatureError(f"creatures.{place}", "each creature once", file["sha256"])
+        files[file["sha256"]] = file
     chosen: dict[int, Files] = {}
     for choice in sorted(set(found.choices), key=lambda one: (one.generation, one.creature)):
         if choice.creature not in files:

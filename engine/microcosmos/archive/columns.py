@@ -2,10 +2,12 @@
 
 import json
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+
+from ..invalid import InvalidField
 
 FORMAT = "microcosmos-columns/1"
 MEDIA_TYPE = "application/vnd.microcosmos.columns"
@@ -40,15 +42,27 @@ def load(content: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     except (struct.error, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"columns must begin with a JSON header; {error}") from error
     if found != FORMAT:
-        raise ValueError(f"`format` of columns must be {FORMAT!r}, got {found!r}")
-    start, columns = LENGTH.size + length, {}
+        raise InvalidField("format", f"of columns must be {FORMAT!r}, got {found!r}")
+    try:
+        return header, _columns(content, LENGTH.size + length, described)
+    except (KeyError, TypeError, OverflowError) as error:
+        raise ValueError(f"columns must have a name, a type and a shape; {error!r}") from error
+
+
+def _columns(
+    content: bytes, start: int, described: Sequence[Mapping[str, Any]]
+) -> dict[str, np.ndarray]:
+    found = {}
     for one in described:
         kind = np.dtype(one["type"]).newbyteorder("<")
         count = int(np.prod(one["shape"], dtype=int))
-        if start + count * kind.itemsize > len(content):
-            raise ValueError(f"column {one['name']!r} ends after the {len(content)} bytes")
+        if not 0 <= count * kind.itemsize <= len(content) - start:
+            raise ValueError(
+                f"column {one['name']!r} of shape {one['shape']} must lie within the "
+                f"{len(content)} bytes"
+            )
         values = np.frombuffer(content, kind, count, start).reshape(one["shape"])
-        columns[one["name"]] = values.astype(kind.newbyteorder("="), copy=False)
+        found[one["name"]] = values.astype(kind.newbyteorder("="), copy=False)
         start += count * kind.itemsize
         start += -start % ALIGNMENT
-    return header, columns
+    return found

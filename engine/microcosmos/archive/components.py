@@ -50,9 +50,9 @@ def scaled(measures: np.ndarray, least: Sequence[float]) -> np.ndarray:
     values = np.array(measures, float)
     for column, floor in enumerate(least):
         if floor:
-            found = np.maximum(values[:, column], floor)
-            there = np.isfinite(found)
-            values[there, column] = exact.logarithm(found[there])
+            clipped = np.maximum(values[:, column], floor)
+            finite = np.isfinite(clipped)
+            values[finite, column] = exact.logarithm(clipped[finite])
     return values
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..invalid import InvalidField
 from ..naming import canonical, decode
 from ..spec.creature import Identity
 from . import file as hdf5
@@ -63,7 +64,7 @@ def load(data: bytes) -> dict[str, Any]:
         with h5py.File(BytesIO(data), "r") as file:
             texts = hdf5_guard.texts(file, ATTRIBUTES)
             if texts["format"] != FORMAT:
-                raise ValueError(f"`format` must be {FORMAT}, got {texts['format']:.60}")
+                raise InvalidField("format", f"must be {FORMAT}, got {texts['format']:.60}")
             parts = {part: json.loads(texts[part]) for part in PARTS}
             identity = json.loads(hdf5_guard.text(file, "identity"))
             found = parse({"identity": identity, "sha256": texts["sha256"], **parts})

@@ -3,7 +3,8 @@
 import csv as csv_module
 import json
 import os
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from io import StringIO
 from math import prod
 from pathlib import Path
@@ -11,16 +12,27 @@ from typing import Any
 
 import numpy as np
 
+from ..naming import LICENCE
 from ..optional import require
+from . import measured
 from .file import Tree, dump, load
 from .poses import PoseStream, streams
 
 Columns = dict[str, Any]
+Terms = dict[str, Any]
+"""The `licence` of a file, and the names to `credit`."""
+IDENTIFIER = r"[\w.:+-]+(?: WITH [\w.:+-]+)?"
+JOINED = re.compile(rf"(?:{IDENTIFIER}|\([^()]*\))(?: AND (?:{IDENTIFIER}|\([^()]*\)))*")
+"""SPDX licences joined by AND; whole texts, which may have capitals too, are none."""
 
 
 def csv(data: bytes) -> str:
     """Return the table of `columns` as CSV, one row per elite."""
-    found = columns(data)
+    return as_csv(columns(data))
+
+
+def as_csv(found: Columns) -> str:
+    """Return columns of equal length as CSV."""
     text = StringIO()
     writer = csv_module.writer(text, lineterminator="\n")
     writer.writerow(found)
@@ -45,15 +57,15 @@ def columns(data: bytes) -> Columns:
     rows = [x.reshape(len(x), prod(x.shape[1:])) for x in arrays]  # There may be no row.
     solution = np.concatenate(rows, axis=1)
     spec = json.loads(attributes["spec"])["archive"]
-    axes, names = spec["descriptors"], json.loads(attributes["measures"])
+    measures = measured.columns(tree, attributes)
     place = scaled if tessellation(archive, spec) is None else unit
-    places = [place(archive["measures"][:, names.index(a["name"])], a) for a in axes]
+    places = [place(measures[axis["name"]], axis) for axis in spec["descriptors"]]
     fitness = archive["fitness"]
     found: Columns = {f"solution_{i}": solution[:, i] for i in range(solution.shape[1])}
     found |= {"objective": fitness}
     found |= {f"measures_{i}": values for i, values in enumerate(places)}
     found |= {"threshold": fitness}
-    found |= {name: archive["measures"][:, i] for i, name in enumerate(names)}
+    found |= measures
     found |= {"generation": archive["generation"]}
     found |= {"creature": [bytes(row).hex() for row in archive["creature"]]}
     return found | repeated(archive) | {"index": archive["cell"]}
@@ -64,6 +76,37 @@ def licensed(data: bytes, licence: str, credit: Sequence[str]) -> bytes:
     tree, attributes = load(data)
     terms = {"licence": licence, "credit": json.dumps(list(credit))}
     return dump(tree, {**attributes, **terms})
+
+
+def terms(attributes: Mapping[str, str]) -> Terms:
+    """Return the `licence` and `credit` in the attributes of a file; empty without any."""
+    if "licence" not in attributes:
+        return {}
+    credit = json.loads(attributes.get("credit", "[]"))
+    return {"licence": attributes["licence"], "credit": credit}
+
+
+def joint_terms(files: Iterable[Mapping[str, Any]]) -> Terms:
+    """Return the terms of what descends from creatures: all licences and all names to credit.
+
+    They are empty if no file has other terms than a new one.
+    """
+    found = [(one.get("licence", LICENCE), one.get("credit", ())) for one in files]
+    given = [(licence, credit) for licence, credit in found if credit or licence != LICENCE]
+    if not given:
+        return {}
+    licences = {licence for licence, _ in given}
+    if len(licences) > 1:
+        licences = {part for one in licences for part in _parts(one)}
+    credit = list(dict.fromkeys(name for _, names in given for name in names))
+    return {"licence": " AND ".join(sorted(licences)), "credit": credit}
+
+
+def _parts(licence: str) -> list[str]:
+    """Return the parts of a licence that joins some; any other is one part."""
+    if JOINED.fullmatch(licence):
+        return re.split(r" AND (?![^(]*\))", licence)
+    return [f"({licence})" if " OR " in licence else licence]  # AND binds first.
 
 
 def centroids(data: bytes) -> np.ndarray:
@@ -140,13 +183,14 @@ def to_ribs(archive: Source) -> Any:
     A grid has ranges on the axes' own scales; with centroids they are 0 to 1 on those scales.
     pyribs rounds differently at the borders of bins, so an elite on a border moves to the
     middle of its cell. An archive with a container becomes the grid over its axes, with the
-    best elite of each bin. Raises `ImportError` without pyribs.
+    best elite of each bin. The dot of a plug-in's measure becomes two underscores, since fields
+    of pyribs have names of Python. Raises `ImportError` without pyribs.
     """
     data = source_bytes(archive)
     found, peer = columns(data), require("ribs.archives", "ribs[visualize]")
     solution, measures = _stacked(found, "solution_"), _stacked(found, "measures_")
     fields = list(found)[list(found).index("threshold") + 1 : -1]
-    fields = {name: np.asarray(found[name]) for name in fields}
+    fields = {name.replace(".", "__"): np.asarray(found[name]) for name in fields}
     filled = _empty(peer, data, solution.shape[1], fields)
     if not _spec(data).get("container"):
         misplaced = filled.index_of(measures) != found["index"]

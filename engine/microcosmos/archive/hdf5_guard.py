@@ -7,6 +7,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..invalid import InvalidField
+
 MAX_TEXT_BYTES = 8 << 20
 """Maximum number of bytes of a text."""
 PLAIN_LAYOUTS = (h5py.h5d.CONTIGUOUS, h5py.h5d.COMPACT)
@@ -24,9 +26,9 @@ def texts(item: Any, names: set[str]) -> dict[str, str]:
 
 def text(group: h5py.Group, name: str) -> str:
     """Return the text in a dataset."""
-    dataset = _own(group, name, name)
+    dataset = own(group, name, name)
     if not isinstance(dataset, h5py.Dataset):
-        raise ValueError(f"`{name}` must be a dataset, got a group")
+        raise InvalidField(name, "must be a dataset, got a group")
     _refuse_elsewhere(dataset, name)
     return _text(dataset, name)
 
@@ -35,43 +37,48 @@ def refuse_other(group: h5py.Group, tree: Mapping[str, Any], where: str = "") ->
     """Raise `ValueError` unless a group holds exactly the arrays of a tree."""
     found = set(islice(group, len(tree) + 1))
     if found != set(tree):
-        raise ValueError(f"`{where or '/'}` must hold {sorted(tree)}, got {_few(found)}")
+        raise InvalidField(f"{where or '/'}", f"must hold {sorted(tree)}, got {_few(found)}")
     for name, expected in tree.items():
         place = f"{where}/{name}"
-        item, inside = _own(group, name, place), isinstance(expected, Mapping)
+        item, inside = own(group, name, place), isinstance(expected, Mapping)
         if isinstance(item, h5py.Group) != inside:
             kind = "group" if inside else "dataset"
-            raise ValueError(f"`{place}` must be a {kind}, got something else")
+            raise InvalidField(place, f"must be a {kind}, got something else")
         if isinstance(expected, Mapping):
             refuse_other(item, expected, place)
         else:
             _refuse_unequal(item, np.asarray(expected), place)
 
 
-def _own(group: h5py.Group, name: str, place: str) -> Any:
+def own(group: h5py.Group, name: str, place: str) -> Any:
     """Return a named item; raise `ValueError` if it is a soft or external link."""
     link = group.get(name, getlink=True)
     if not isinstance(link, h5py.HardLink):
         kind = type(link).__name__ if link else "nothing"
-        raise ValueError(f"`{place}` must lie in the file itself, got {kind}")
+        raise InvalidField(place, f"must lie in the file itself, got {kind}")
     return group[name]
+
+
+def refuse_outside(dataset: h5py.Dataset, place: str) -> None:
+    """Raise `ValueError` for an array that lies in another file."""
+    if dataset.id.get_create_plist().get_external_count():
+        raise InvalidField(place, "must be stored in the file, got external storage")
+    if dataset.is_virtual:
+        raise InvalidField(place, "must be stored in the file, got a virtual dataset")
 
 
 def _refuse_elsewhere(dataset: h5py.Dataset, place: str) -> None:
     """Refuse external storage and filters: reading must not exceed the file's size."""
+    refuse_outside(dataset, place)
     layout = dataset.id.get_create_plist()
-    if layout.get_external_count():
-        raise ValueError(f"`{place}` must be stored in the file, got external storage")
-    if dataset.is_virtual:
-        raise ValueError(f"`{place}` must be stored in the file, got a virtual dataset")
     if layout.get_layout() not in PLAIN_LAYOUTS or layout.get_nfilters():
-        raise ValueError(f"`{place}` must be stored plainly, got chunks or filters")
+        raise InvalidField(place, "must be stored plainly, got chunks or filters")
 
 
 def _text(item: Any, place: str) -> str:
     """Return a text of fixed length; refuse variable length, which points to a heap."""
     if item.shape != () or item.dtype.kind != "S" or item.dtype.itemsize > MAX_TEXT_BYTES:
-        raise ValueError(f"`{place}` must be one text, got {item.dtype}{item.shape}")
+        raise InvalidField(place, f"must be one text, got {item.dtype}{item.shape}")
     if isinstance(item, h5py.Dataset):
         return bytes(item[()]).decode()
     value = np.empty((), item.dtype)
@@ -82,16 +89,17 @@ def _text(item: Any, place: str) -> str:
 def _refuse_unequal(dataset: h5py.Dataset, expected: np.ndarray, place: str) -> None:
     _refuse_elsewhere(dataset, place)
     if (dataset.shape, dataset.dtype) != (expected.shape, expected.dtype):
-        raise ValueError(
-            f"`{place}` must be {expected.dtype}{expected.shape} as the identity has it, "
-            f"got {dataset.dtype}{dataset.shape}"
+        raise InvalidField(
+            place,
+            f"must be {expected.dtype}{expected.shape} as the identity has it, "
+            f"got {dataset.dtype}{dataset.shape}",
         )
     found = np.asarray(dataset[()])
     floats = expected.dtype.kind == "f"
     # Compare bytes, not values: a boolean of byte 0x41 would equal true.
     same = found.tobytes() == expected.tobytes()
     if not same and not (floats and np.allclose(found, expected, TOLERANCE)):
-        raise ValueError(f"`{place}` must be as the identity has it, got other values")
+        raise InvalidField(place, "must be as the identity has it, got other values")
 
 
 def _few(names: set[str]) -> list[str]:

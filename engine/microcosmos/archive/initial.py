@@ -9,11 +9,11 @@ from typing import Any
 
 from ..bodies.growth import FIRST_LIMBS
 from ..naming import decode, encode
-from ..spec import BodyGraph, Direct, Evolution, Grown, GrownBody, Weights, shape
+from ..spec import BodyGraph, Direct, Evolution, GrownBody, PluginControl, shape
+from ..spec.body import is_unavailable
 from ..spec.control import Control
 from ..spec.creature import CreatureError, Identity
-from ..spec.creature.cppn_genes import Connections, Nodes, check_genes
-from ..spec.creature.genomes import Segments
+from ..spec.creature.genomes import Connections, Nodes, Segments, check_genes
 
 Genes = dict[str, Any]
 """The genome of a creature's identity."""
@@ -28,7 +28,7 @@ def genes_of(chosen: Evolution, files: Iterable[Mapping[str, Any]]) -> list[Gene
     Raises `CreatureError`, which names the field of the spec that a creature does not fit.
     """
     genomes = [fitting(chosen, file) for file in files]
-    if isinstance(chosen.control, Control | Grown | BodyGraph):
+    if isinstance(chosen.control, Control | BodyGraph):
         return renumbered(genomes, len(chosen.control.inputs), len(chosen.control.outputs))
     return genomes
 
@@ -40,8 +40,8 @@ def fitting(chosen: Evolution, file: Mapping[str, Any]) -> Genes:
     _compare("control.encoding", control.encoding, genome["encoding"], who)
     for name in ("inputs", "outputs"):
         found = list(genome.get(name, ()))
-        _compare(f"control: {name}", list(getattr(control, name)), found, who)
-    if isinstance(control, Control | Grown | BodyGraph):
+        _compare(f"control.{name}", list(getattr(control, name)), found, who)
+    if isinstance(control, Control | BodyGraph):
         _refuse_large(chosen, genome, who)
         _refuse_cycles(control, genome, who)
     else:
@@ -50,9 +50,9 @@ def fitting(chosen: Evolution, file: Mapping[str, Any]) -> Genes:
     return genome
 
 
-def _compare(field: str, got: Any, needed: Any, who: str) -> None:
+def _compare(field: str, got: Any, needed: Any, who: str, what: str = "") -> None:
     if got != needed:
-        raise CreatureError(field, f"{needed!r} to begin from {who}", got)
+        raise CreatureError(field, f"{what}{needed!r} to begin from {who}", got)
 
 
 def _refuse_large(chosen: Evolution, genome: Genes, who: str) -> None:
@@ -73,7 +73,7 @@ def _refuse_large(chosen: Evolution, genome: Genes, who: str) -> None:
             ) from error
 
 
-def _refuse_cycles(control: Control | Grown | BodyGraph, genome: Genes, who: str) -> None:
+def _refuse_cycles(control: Control | BodyGraph, genome: Genes, who: str) -> None:
     if getattr(control, "recurrent", False):
         return
     fixed = len(control.inputs), len(control.outputs)
@@ -86,18 +86,23 @@ def _refuse_cycles(control: Control | Grown | BodyGraph, genome: Genes, who: str
 
 
 def _refuse_other_parts(chosen: Evolution, before: Any, who: str) -> None:
-    """Raise `CreatureError` unless each gene means the same: joints, edges, layers."""
+    """Raise `CreatureError` unless each gene means the same: terms, plug-in, joints, edges."""
     control, old = chosen.control, before.control
-    if isinstance(control, Weights):
-        _compare("control: layers", list(control.sizes), list(old.sizes), who)
     if isinstance(control, Direct):
         _compare("control.waveform", control.waveform, old.waveform, who)
         _compare("control.terms", control.terms, old.terms, who)
-        _compare("control: inherited traits", sorted(control.traits), sorted(old.traits), who)
-        now, then = shape(chosen.body), shape(before.body)
-        for name in ("joints", "edges"):
-            needed, found = len(getattr(then, name)), len(getattr(now, name))
-            _compare(f"body: number of {name}", found, needed, who)
+        traits = sorted(control.traits), sorted(old.traits)
+        _compare("control", *traits, who, "the inherited traits ")
+    if isinstance(control, PluginControl):
+        for name in ("source", "settings"):
+            version, needed = (getattr(one.plugin, name) for one in (control, old))
+            _compare(f"control.plugin.{name}", version, needed, who)
+    if is_unavailable(chosen.body):  # A worker that can build it checks it.
+        return
+    now, then = shape(chosen.body), shape(before.body)
+    for name in ("joints", "edges"):
+        needed, found = len(getattr(then, name)), len(getattr(now, name))
+        _compare("body", found, needed, who, f"as many {name} as ")
 
 
 def renumbered(genomes: Sequence[Genes], inputs: int, outputs: int) -> list[Genes]:

@@ -2,14 +2,15 @@
 
 import json
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from ..invalid import InvalidField
+from . import measured
 from .axes import floors
 from .components import Components, scaled
 from .export import Source, source_bytes
-from .file import Tree, load
+from .file import load
 
 PARTS = ("mean", "scale", "weights", "explained", "low", "high")
 
@@ -64,14 +65,15 @@ def learned_axes(archive: Source) -> LearnedAxes:
     container = json.loads(attributes["spec"]).get("archive", {}).get("container") or {}
     if container.get("kind") != "learned":
         kind = container.get("kind", "none")
-        raise ValueError(f"`archive.container.kind` must be 'learned', got {kind!r}")
+        raise InvalidField("archive.container.kind", f"must be 'learned', got {kind!r}")
     known = tree["loop"]["container"]
     if not known["epoch"]:
         raise ValueError("axes must have been learned, got a file from before: go on with it")
-    recorded = json.loads(attributes["measures"])
-    names = container["measures"] or recorded
+    recorded = measured.columns(tree, attributes)
+    names = container["measures"] or list(recorded)
     found = Components(**{name: np.asarray(known[name], float) for name in PARTS})
-    values = _values(tree, [recorded.index(name) for name in names], names)
+    columns = np.stack([recorded[name] for name in names], 1)
+    values = scaled(columns, floors(names))
     return LearnedAxes(
         measures=tuple(names),
         components=found,
@@ -79,7 +81,3 @@ def learned_axes(archive: Source) -> LearnedAxes:
         creature=tree["archive"]["creature"],
         generation=tree["learned"]["generation"],
     )
-
-
-def _values(tree: Tree, columns: list[int], names: list[str]) -> Any:
-    return scaled(tree["archive"]["measures"][:, columns], floors(names))

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from .creature import CreatureError, parse
+from .creature import CreatureError, alone, check
 
 MAX_ANCESTORS = 200
 """Maximum number of ancestors in one document."""
@@ -24,7 +24,7 @@ def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]
         got = len(files) if isinstance(files, list) else files
         needed = f"a list of at most {MAX_ANCESTORS} creature files"
         raise CreatureError("ancestors", needed, got)
-    file = parse({name: part for name, part in data.items() if name != "ancestors"})
+    file = check(alone(data))
     ancestors = [_ancestor(one, place) for place, one in enumerate(files)]
     _refuse_unrelated(file, ancestors)
     return file, ancestors
@@ -32,10 +32,10 @@ def split(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[dict[str, Any]]
 
 def _ancestor(data: Any, place: int) -> dict[str, Any]:
     try:
-        return parse(data)
+        return check(data)  # It has no `ancestors` of its own.
     except CreatureError as error:
         field = f"ancestors.{place}.{error.field}"
-        raise CreatureError(field, error.needed, error.got) from error
+        raise CreatureError(field, error.needed or "", error.got, error.reason) from error
 
 
 def parents(file: Mapping[str, Any]) -> list[str]:

@@ -4,6 +4,7 @@ import csv
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
+from math import isinf
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -22,8 +23,9 @@ class Birth(NamedTuple):
     """The run in which it entered an archive first, if any."""
     generation: int
     """Generation of that run, or `NONE`."""
-    lost: int
-    """The generation in which its last cell went to another, or `NONE`."""
+    lost: Mapping[str, int]
+    """By run, the generation in which its last cell there went to another; empty while it has
+    a cell in any."""
     operator: str | None
     fitness: float | None
 
@@ -54,7 +56,7 @@ def entries(
 
 
 def births_of(found: Iterable[Entry], links: Mapping[str, Sequence[str]]) -> Iterator[Birth]:
-    """Yield the first entry of each creature; it is lost when its run has it in no cell.
+    """Yield the first entry of each creature; it is lost when no run has it in a cell.
 
     `links` are parents by the name of their child, in the order in which it names them.
     """
@@ -62,14 +64,16 @@ def births_of(found: Iterable[Entry], links: Mapping[str, Sequence[str]]) -> Ite
     for entry in found:
         listed.setdefault(entry[0], []).append(entry)
     for name, mine in listed.items():
-        _, run, generation, lost, operator, fitness = mine[0]
-        ends = [lost] if len(mine) == 1 else [one[3] for one in mine if one[1] == run]
+        _, run, generation, _, operator, fitness = mine[0]
+        ends = [(one[3], one[1]) for one in mine if one[1] and one[3] is not None]
+        # Sorted: the last loss of each run counts.
+        lost = {name: end for end, name in sorted(ends)} if len(ends) == len(mine) else {}
         yield Birth(
             creature=name,
             parents=links.get(name, ()),
             run=run,
             generation=NONE if generation is None else generation,
-            lost=NONE if None in ends else max(end for end in ends if end is not None),
+            lost=lost,
             operator=operator,
             fitness=fitness,
         )
@@ -87,6 +91,7 @@ class Phylogeny:
     run: np.ndarray
     generation: np.ndarray
     lost: np.ndarray
+    """(creature,) the generation of its run at the time of its last loss, in whatever run."""
     operator: np.ndarray
     time: np.ndarray
     """(creature,) generations since the first ancestor, over all runs."""
@@ -134,6 +139,19 @@ def phylogeny(
     place = np.empty(len(order), int)
     place[order] = np.arange(len(order))
     moved = place[links]
+    since = time - generation
+    lost = [
+        # A run in which every creature was known before has no place on the axis of time.
+        max(
+            (
+                end if name == one.run else begun[number[name]] + end - since[i]
+                for name, end in one.lost.items()
+                if name in number
+            ),
+            default=NONE,
+        )
+        for i, one in enumerate(listed)
+    ]
     names = sorted({one.operator for one in listed if one.operator is not None})
     code = {name: i for i, name in enumerate(names)}
     chosen = [listed[i] for i in order]
@@ -144,7 +162,7 @@ def phylogeny(
         links=moved[np.argsort(moved[:, 0], kind="stable")],
         run=run[order],
         generation=generation[order],
-        lost=np.array([one.lost for one in chosen], int),
+        lost=np.array(lost, int)[order],
         operator=np.array([code.get(one.operator or "", NONE) for one in chosen], int),
         time=time[order],
         fitness=np.array([one.fitness for one in chosen], float),
@@ -201,7 +219,8 @@ def alife_csv(found: Phylogeny) -> str:
     """Return the ALife phylogeny standard's table: `id`, `ancestor_list`, `origin_time`,
     `destruction_time`, and further columns of ours.
 
-    An id is a row. `destruction_time` is empty for elites of today.
+    An id is a row. The `destruction_time` of an elite is `inf`, as phylotrackpy has it, and
+    that of a creature that entered no archive its origin.
     """
     ancestors: list[list[int]] = [[] for _ in found.creature]
     for child, parent in found.links.tolist():
@@ -210,13 +229,21 @@ def alife_csv(found: Phylogeny) -> str:
     writer = csv.writer(text, lineterminator="\n")
     head = ("id", "ancestor_list", "origin_time", "destruction_time", "taxon_label")
     writer.writerow((*head, "run", "generation", "operator", "fitness"))
-    ended, fitness = found.destruction.tolist(), found.fitness.tolist()
+    fitness = found.fitness.tolist()
+    lives = np.where(np.asarray(found.run) == NONE, found.time, np.inf)
+    ended = np.where(found.destruction == NONE, lives, found.destruction).tolist()
     for i, name in enumerate(found.creature):
         listed = ",".join(map(str, ancestors[i])) or "none"
         run, operator, generation = found.run[i], found.operator[i], found.generation[i]
         writer.writerow(
             (
-                *(i, f"[{listed}]", found.time[i], "" if ended[i] == NONE else ended[i], name),
+                *(
+                    i,
+                    f"[{listed}]",
+                    found.time[i],
+                    "inf" if isinf(ended[i]) else int(ended[i]),
+                    name,
+                ),
                 "" if run == NONE else found.runs[run],
                 "" if generation == NONE else generation,
                 "" if operator == NONE else found.operators[operator],

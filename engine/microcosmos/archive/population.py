@@ -1,11 +1,11 @@
 """Creatures as columns: names, fitness, generations and measures."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from . import measured
 from .file import load
 
 Column = np.ndarray | Sequence[float | None]
@@ -22,7 +22,7 @@ class Creatures:
     """Generation in which each first entered."""
     measures: Mapping[str, np.ndarray]
     given: np.ndarray
-    """Row of each among the columns that were given."""
+    """Row of each creature in the given columns."""
 
     def __len__(self) -> int:
         return len(self.names)
@@ -64,10 +64,9 @@ def of_file(data: bytes) -> Creatures:
     if "archive" not in tree:
         raise ValueError("an archive is needed, as searches have; got a table")
     archive = tree["archive"]
-    names = json.loads(attributes["measures"])
     return creatures(
         [bytes(row).hex() for row in archive["creature"]],
         archive["fitness"],
         archive["generation"],
-        dict(zip(names, archive["measures"].T, strict=True)),
+        measured.columns(tree, attributes),
     )

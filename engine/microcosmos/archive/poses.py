@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ..invalid import InvalidField
+
 FORMAT = "microcosmos-poses/1"
 FRAMES = 64
 """Recorded poses, at equal times: 32 for each of the last two strokes."""
@@ -112,9 +114,15 @@ def decode(data: bytes) -> PoseStream:
     except (struct.error, ValueError) as error:
         raise ValueError(f"a pose stream must start with its header: {error}") from error
     if not isinstance(header, dict) or header.get("format") != FORMAT:
-        raise ValueError(f"`format` of a pose stream must be {FORMAT}")
+        raise InvalidField("format", f"of a pose stream must be {FORMAT}")
+    try:
+        return _stream(header, data, _LENGTH.size + length)
+    except (KeyError, IndexError, TypeError, OverflowError) as error:
+        raise ValueError(f"a pose stream must have a whole header; {error!r}") from error
+
+
+def _stream(header: Mapping[str, Any], data: bytes, start: int) -> PoseStream:
     frames, nodes, moments = (int(header[name]) for name in ("frames", "nodes", "moments"))
-    start = _LENGTH.size + length
     needed = start + 8 * moments + 4 * frames * nodes
     if len(data) != needed:
         raise ValueError(f"the pose stream needs {needed:,} bytes, got {len(data):,}")
@@ -198,9 +206,17 @@ def _filled(rows: list[np.ndarray], rest: tuple[int, ...], kind: str) -> np.ndar
 
 
 def streams(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> list[PoseStream]:
-    """Return the pose streams of the elites in an archive file, as `file.load` returns it."""
+    """Return the pose streams of the elites in an archive file, as `file.load` returns it.
+
+    Raises `ValueError` where edges connect nodes that there are not.
+    """
     archive, spec = tree["archive"], json.loads(attributes["spec"])
     kept, world = archive["poses"], spec["world"]
+    nodes = np.minimum(kept["nodes"], kept["positions"].shape[2])
+    outside = (kept["edges"] < 0) | (kept["edges"] >= nodes[:, None, None])
+    if outside.any():
+        got = kept["edges"][outside][0]
+        raise InvalidField("archive/poses/edges", f"must connect nodes of the body; got {got}")
     return [
         PoseStream(
             positions=kept["positions"][i, :, : kept["nodes"][i]],

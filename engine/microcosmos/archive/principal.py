@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..invalid import InvalidField
 from .axes import BINS, Axis, floors
 from .components import Components, learn, scaled
 from .population import Creatures
@@ -48,9 +49,10 @@ def principal(
     vary = np.flatnonzero(learned.scale > 0) if learned else np.zeros(0, int)
     needed = max(2, *numbers)
     if learned is None or len(vary) < needed or np.count_nonzero(able) <= needed:
-        raise ValueError(
-            f"`axes` of principal components need at least {needed} measures that vary and "
-            f"{needed + 1} creatures, got {len(vary)} and {np.count_nonzero(able)}"
+        raise InvalidField(
+            "axes",
+            f"of principal components need at least {needed} measures that vary and "
+            f"{needed + 1} creatures, got {len(vary)} and {np.count_nonzero(able)}",
         )
     coordinates = np.full((len(found), max(numbers)), np.nan)
     coordinates[able] = learned.coordinates(values[able])

@@ -12,7 +12,8 @@ from math import prod
 
 import numpy as np
 
-from ..spec.measures import MEASURES
+from ..invalid import InvalidField
+from ..measures import MEASURES
 from ..spec.search import MAX_CELLS
 from . import principal
 from .axes import Axis, axis, cells
@@ -111,7 +112,7 @@ def reproject(found: Creatures, axes: Sequence[Axis]) -> Reprojection:
     many cells.
     """
     if (count := prod(one.bins for one in axes)) > MAX_CELLS:
-        raise ValueError(f"`bins` must give at most {MAX_CELLS:,} cells, got {count:,}")
+        raise InvalidField("bins", f"must give at most {MAX_CELLS:,} cells, got {count:,}")
     values = [found.measures[one.name] for one in axes]
     able = np.flatnonzero(np.all(np.isfinite([found.fitness, *values]), axis=0))
     cell = cells(axes, [column[able] for column in values])
@@ -138,16 +139,20 @@ def _refuse(
     found: Creatures, names: Sequence[str], bins: Sequence[int], of: Sequence[str]
 ) -> None:
     if not names or len(set(names)) < len(names):
-        raise ValueError(f"`axes` must be names that differ, got {', '.join(names) or 'none'}")
+        raise InvalidField(
+            "axes", f"must be names that differ, got {', '.join(names) or 'none'}"
+        )
     known = ", ".join(found.measures)
     able = {*found.measures, FITNESS, *filter(NAME.fullmatch, names)}
     if wrong := [name for name in names if name not in able]:
         needed = f"fitness, pc1 to pc9 or measures ({known})"
-        raise ValueError(f"`axes` must be {needed}; got {', '.join(wrong)}")
+        raise InvalidField("axes", f"must be {needed}; got {', '.join(wrong)}")
     if wrong := [name for name in of if name not in found.measures]:
-        raise ValueError(f"`components_of` must be measures ({known}); got {', '.join(wrong)}")
+        raise InvalidField(
+            "components_of", f"must be measures ({known}); got {', '.join(wrong)}"
+        )
     if len(bins) not in (0, 1, len(names)) or any(not 1 <= one <= 1024 for one in bins):
         got = ", ".join(map(str, bins))
-        raise ValueError(
-            f"`bins` must be one number from 1 to 1,024, or one for each axis; got {got}"
+        raise InvalidField(
+            "bins", f"must be one number from 1 to 1,024, or one for each axis; got {got}"
         )

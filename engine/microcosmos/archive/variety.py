@@ -140,8 +140,8 @@ def is_chain(edges: np.ndarray) -> bool:
 def distances(strokes: np.ndarray, chains: np.ndarray) -> np.ndarray:
     """Return motion distances (creature, creature) of strokes (creature, phase, point).
 
-    `chains` tells whose ends may be exchanged. The correlation at all shifts of phase is a
-    product for each temporal frequency; its modulus is that after the best rotation.
+    `chains` marks creatures whose ends may be exchanged. The correlation at all shifts of
+    phase is a product for each temporal frequency; its modulus is that after the best rotation.
     """
     power = (np.abs(strokes) ** 2).sum((1, 2))
     spectrum = _spectrum(strokes).conj()

@@ -38,9 +38,9 @@ def gradient(
             task, actuator, values, of, horizon=horizon, segment=segment
         )
 
-    found, rows = jax.device_get(jax.jit(both, compiler_options=compiler_options())(values))
+    measured, rows = jax.device_get(jax.jit(both, compiler_options=compiler_options())(values))
     slopes = {name: {part: rows[part][i] for part in rows} for i, name in enumerate(of)}
-    return dict(zip(of, found.tolist(), strict=True)), slopes
+    return dict(zip(of, measured.tolist(), strict=True)), slopes
 
 
 def report_gradient(

@@ -1,4 +1,4 @@
-"""Write the inputs of a creature's evaluation, for the native kernel in a browser."""
+"""Inputs of a creature's evaluation, written for the native kernel in a browser."""
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
@@ -11,7 +11,8 @@ from .. import search
 from ..archive import columns, creature
 from ..build import build_point, build_task
 from ..device import compiler_options
-from ..search.summary import SUMMARISED
+from ..search.evaluation import FEASIBLE
+from ..search.window import SUMMARISED
 from ..spec import Gait, Scene, Task
 from ..viz.replay import actuator_of
 
@@ -29,20 +30,21 @@ def evaluation_inputs(file: Mapping[str, Any]) -> bytes:
     scene = creature.scene_of(file)
     header: dict[str, Any] = {"creature": file["sha256"], "uncovered": None}
     try:
-        goal, found = _inputs(file, scene)
+        goal, inputs = _inputs(file, scene)
     except search.NotCovered as error:
         return columns.dump(header | {"uncovered": error.reason}, {})
     arrays: Arrays = {}
-    trials, placements = found.scales.shape[:2]
+    trials, placements = inputs.scales.shape[:2]
     header |= {
         "goal": goal if scene.task.plugin is None else None,
         "measures": SUMMARISED,
+        "largest": [name for name, _ in FEASIBLE.values()],
         "cycle": scene.control.period if isinstance(scene.control, Gait) else None,
         "copies": 1 if scene.world.copies is None else scene.world.copies.count,
-        "numbers": {"develop": dict(found.development), "rollout": dict(found.simulation)},
+        "numbers": {"develop": dict(inputs.development), "rollout": dict(inputs.simulation)},
         "trials": [
             [
-                _simulation(_at(found, trial, placement), arrays)
+                _simulation(_at(inputs, trial, placement), arrays)
                 for placement in range(placements)
             ]
             for trial in range(trials)
@@ -54,12 +56,12 @@ def evaluation_inputs(file: Mapping[str, Any]) -> bytes:
 def _inputs(file: Mapping[str, Any], scene: Scene) -> tuple[dict[str, Any], search.Inputs]:
     """Return the goal of a creature's task, and the inputs as NumPy arrays.
 
-    Measures of plug-ins are left out: no kernel computes them.
+    Measures that a spec names are left out: no kernel computes them.
     """
     task = scene.task
     if task.plugin is not None:
         task = Task(steps=task.steps, trials=task.trials)
-    bare = scene.model_copy(update={"task": task, "plugins": {}})
+    bare = scene.model_copy(update={"task": task, "measures": (), "plugins": {}})
     goal, program = _program(bare.model_dump_json())
     actuator = actuator_of(file, scene)
     if isinstance(scene.control, Gait):
@@ -69,33 +71,33 @@ def _inputs(file: Mapping[str, Any], scene: Scene) -> tuple[dict[str, Any], sear
 
 @lru_cache(maxsize=16)
 def _program(scene_json: str) -> tuple[dict[str, Any], Callable[..., search.Inputs]]:
-    """Return a goal, and the program from a genotype, or rest shapes and the conditions of a
-    point, to the inputs.
+    """Return a goal and the program that computes the inputs.
 
-    Its compiler options are those of evaluations, for the same bits.
+    The program takes a genotype, or rest shapes and the conditions of a point.
     """
     task = build_task(Scene.model_validate_json(scene_json))
 
-    def found(actuator: search.Actuator, *point: search.Conditions) -> search.Inputs:
+    def inputs(actuator: search.Actuator, *point: search.Conditions) -> search.Inputs:
         return search.inputs(search.in_conditions(task, *point) if point else task, actuator)
 
-    program = jax.jit(found, compiler_options=compiler_options())
+    # The compiler options of evaluations, for the same bits.
+    program = jax.jit(inputs, compiler_options=compiler_options())
     return {name: getattr(task.goal, name) for name in GOAL}, program
 
 
-def _at(found: search.Inputs, trial: int, placement: int) -> search.Inputs:
-    return jax.tree.map(lambda x: x[trial, placement], found)
+def _at(inputs: search.Inputs, trial: int, placement: int) -> search.Inputs:
+    return jax.tree.map(lambda x: x[trial, placement], inputs)
 
 
-def _simulation(found: search.Inputs, arrays: Arrays) -> dict[str, Any]:
+def _simulation(inputs: search.Inputs, arrays: Arrays) -> dict[str, Any]:
     """Return the inputs of one simulation, with arrays by their places in the file."""
     return {
-        "develop": [_place(one, arrays) for one in found.develop],
-        "rollout": [_place(one, arrays) for one in found.rollout],
-        "clock": _place(found.clock, arrays),
-        "scales": _place(found.scales, arrays),
-        "whole": _place(found.whole, arrays),
-        "constant": {name: float(value) for name, value in found.constant.items()},
+        "develop": [_place(one, arrays) for one in inputs.develop],
+        "rollout": [_place(one, arrays) for one in inputs.rollout],
+        "clock": _place(inputs.clock, arrays),
+        "scales": _place(inputs.scales, arrays),
+        "whole": _place(inputs.whole, arrays),
+        "constant": {name: float(value) for name, value in inputs.constant.items()},
     }
 
 

@@ -96,6 +96,7 @@ def audit(file: Mapping[str, Any]) -> dict[str, Any]:
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
     body, rest = _developed(scene, driven, rest)
+    # At full strength: a soft body lags behind a reciprocal gait, and its motion is not one.
     back, _ = _simulate_rest(at_full_strength(scene, body), reciprocal(rest))
     rows = [
         *_simulation_rows(scene, nominal),
@@ -139,7 +140,7 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
     program = jax.jit(run, compiler_options=compiler_options())
     results = jax.device_get(program(driven.start, driven.inputs))
     displacement, path, values, rest = results
-    found = Simulation(
+    simulation = Simulation(
         displacement=np.asarray(displacement, float),
         path=float(path),
         mach=float(values["mach"]),
@@ -148,7 +149,7 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
         impulse=float(values["impulse"]),
         crossing=float(values["crossing"]),
     )
-    return found, rest
+    return simulation, rest
 
 
 def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, note: str):
@@ -163,21 +164,22 @@ def _row(name: str, quantity: str, value: float, unit: str, bar: str, passed, no
     }
 
 
-def _simulation_rows(scene: spec.Scene, found: Simulation) -> list[dict[str, Any]]:
+def _simulation_rows(scene: spec.Scene, simulation: Simulation) -> list[dict[str, Any]]:
     pushed = "" if scene.coupling.force_free else ": this form of the coupling allows it"
     fast = "the flow is so fast that it is compressible"
     limits = "limits are active and in part determine how it swims"
     bounded = (
-        ("mach", "largest Mach number", found.mach, "", units.MAX_MACH, fast),
-        ("limited", "node steps at a limit", found.limited, "share", units.MAX_LIMITED, limits),
-        ("impulse", "net impulse on the fluid", found.impulse, "lattice units",
+        ("mach", "largest Mach number", simulation.mach, "", units.MAX_MACH, fast),
+        ("limited", "node steps at a limit", simulation.limited, "share",
+         units.MAX_LIMITED, limits),
+        ("impulse", "net impulse on the fluid", simulation.impulse, "lattice units",
          units.MAX_IMPULSE, "it pushes itself" + pushed),
-        ("crossing", "poses in which filaments cross", found.crossing, "share",
+        ("crossing", "poses in which filaments cross", simulation.crossing, "share",
          units.MAX_CROSSING, "filaments pass through each other"),
     )  # fmt: skip
     return [
-        _row("displacement", "displacement", found.distance, "cells", "", None, ""),
-        _row("reynolds", "Reynolds number", found.reynolds, "", "", None, ""),
+        _row("displacement", "displacement", simulation.distance, "cells", "", None, ""),
+        _row("reynolds", "Reynolds number", simulation.reynolds, "", "", None, ""),
         *(
             _row(name, quantity, value, unit, f"at most {most:g}", value <= most, note)
             for name, quantity, value, unit, most, note in bounded
@@ -196,6 +198,7 @@ def _agreement_rows(
     variants = [
         ("refined", "on half the grid spacing with a quarter of the step", finer, shapes)
     ]
+    # Without limits both variants would be the recorded simulation.
     if scene.coupling.limits:
         wide, free = with_limits(scene, body, 2.0), with_limits(scene, body, None)
         variants += [("wider limits", "with limits doubled", wide, rest)]
@@ -212,9 +215,10 @@ def _agreement_rows(
 
 
 def _agreement_row(
-    name: str, how: str, expected: np.ndarray, found: Simulation
+    name: str, how: str, expected: np.ndarray, simulation: Simulation
 ) -> dict[str, Any]:
-    share = float(found.displacement @ expected) / max(float(expected @ expected), 1e-24)
+    # The part along the expected direction: as far in another direction is no agreement.
+    share = float(simulation.displacement @ expected) / max(float(expected @ expected), 1e-24)
     low, high = RANGES[name]
     return _row(
         name,
@@ -223,13 +227,16 @@ def _agreement_row(
         "of the recorded",
         f"{low:g} to {high:g}",
         low <= share <= high,
-        f"{how}, it goes {share:.2f} times as far",
+        f"{how}, it goes {share:.2f} times as far"
+        if np.isfinite(share)
+        else f"{how}, its simulation does not stay finite",
     )
 
 
 def _reciprocal_row(back: Simulation, at_rest: bool) -> dict[str, Any]:
-    creeping = at_rest and back.reynolds < CREEPING_REYNOLDS
     share = back.distance / max(back.path, 1e-12)
+    finite = np.isfinite(share) and np.isfinite(back.reynolds)
+    creeping = at_rest and not back.reynolds >= CREEPING_REYNOLDS
     return _row(
         "reciprocal",
         "displacement of the gait made reciprocal",
@@ -237,5 +244,7 @@ def _reciprocal_row(back: Simulation, at_rest: bool) -> dict[str, Any]:
         "of the path",
         f"at most {MAX_RECIPROCAL:g} below Reynolds number {CREEPING_REYNOLDS:g}",
         share <= MAX_RECIPROCAL if creeping else None,
-        "made reciprocal, it still swims although inertia is negligible",
+        "made reciprocal, it still swims although inertia is negligible"
+        if finite
+        else "made reciprocal, its simulation does not stay finite",
     )

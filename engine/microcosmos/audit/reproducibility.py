@@ -11,22 +11,32 @@ from .. import search
 from ..archive import creature
 from ..build import build_block, build_point, build_stroke_block, measures_of
 from ..device import device_kind
+from ..search import STROKE_MEASURES
 from ..spec import Gait
-from ..spec.creature import fitness_of
 from ..viz.replay import actuator_of
 
 
 @dataclass(frozen=True)
 class Check:
-    """Recorded and repeated measures; `exact` if every recorded bit is the same."""
+    """Recorded and repeated numbers."""
 
+    fitness: tuple[float, float]
+    """Recorded and repeated."""
     recorded: dict[str, float]
+    """Measures."""
     repeated: dict[str, float]
     same_device: bool
 
     @property
     def exact(self) -> bool:
-        return self.recorded == {name: self.repeated.get(name) for name in self.recorded}
+        """Return whether the bits of the fitness and of every recorded measure are the same."""
+        known = {name: self.repeated.get(name) for name in self.recorded}
+        return self.fitness[0] == self.fitness[1] and self.recorded == known
+
+    @property
+    def missing(self) -> list[str]:
+        """Return the measures that the evaluation has and the file lacks."""
+        return sorted(self.repeated.keys() - self.recorded.keys())
 
 
 def check(file: Mapping[str, Any]) -> Check:
@@ -37,23 +47,27 @@ def check(file: Mapping[str, Any]) -> Check:
     file = creature.parse(file)
     if not file["measured"]:
         raise creature.CreatureError("measured", "a measurement to compare with", None)
-    repeated = _repeat(file)
+    fitness, repeated = _repeat(file)
     return Check(
+        fitness=(file["measured"]["fitness"], fitness),
         recorded=file["measured"]["measures"],
         repeated=repeated,
+        # `device_kind` names no processor where the portable flags cover a program.
         same_device=file["measured"]["device"] in (device_kind(), device_kind(portable=False)),
     )
 
 
-def _repeat(file: Mapping[str, Any]) -> dict[str, float]:
+def _repeat(file: Mapping[str, Any]) -> tuple[float, dict[str, float]]:
+    """Return fitness and measures."""
     scene, block = creature.scene_of(file), file["measured"]["block"]
     if isinstance(scene.control, Gait):
-        program, point = build_stroke_block(scene), build_point(scene)
-        found = search.evaluate_blocks(program, _batch_of_one(point), block=block)
-        return dict(zip(search.STROKE_MEASURES, found.measures[0].tolist(), strict=True))
-    genotype = actuator_of(file, scene)
-    found = search.evaluate_blocks(build_block(scene), _batch_of_one(genotype), block=block)
-    return dict(zip(measures_of(scene), found.measures[0].tolist(), strict=True))
+        program, given, names = build_stroke_block(scene), build_point(scene), STROKE_MEASURES
+    else:
+        given, names = actuator_of(file, scene), measures_of(scene)
+        program = build_block(scene)
+    # In a block of the recorded size: the size of a program's batch may change its bits.
+    found = search.evaluate_blocks(program, _batch_of_one(given), block=block)
+    return float(found.fitness[0]), dict(zip(names, found.measures[0].tolist(), strict=True))
 
 
 def _batch_of_one(item: Any) -> Any:
@@ -63,18 +77,15 @@ def _batch_of_one(item: Any) -> Any:
 def measurement(file: Mapping[str, Any]) -> dict[str, Any]:
     """Return the comparison as JSON, described in `docs/formats.md`; raises as `check`."""
     file = creature.parse(file)
-    found = check(file)
-    fitness = file["measured"]["fitness"]
-    task = creature.Identity.model_validate(file["identity"]).task
-    # Compilers may fuse the sum in fitness: equal measures mean equal fitness.
-    repeated = fitness if found.exact else fitness_of(task, found.repeated)
+    checked = check(file)
     return {
         "creature": file["sha256"],
-        "exact": found.exact,
+        "exact": checked.exact,
         "device": device_kind(),
         "recorded_device": file["measured"]["device"],
-        "fitness": _compared("fitness", fitness, repeated),
-        "figures": differing(found.recorded, found.repeated),
+        "fitness": _compared("fitness", *checked.fitness),
+        "figures": differing(checked.recorded, checked.repeated),
+        "missing": checked.missing,
     }
 
 

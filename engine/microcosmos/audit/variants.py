@@ -1,4 +1,4 @@
-"""Variants of a simulation that should, or should not, change the result."""
+"""Variants of a simulation, by which the audit tells swimming from artefacts."""
 
 from dataclasses import replace
 from typing import Any
@@ -22,7 +22,7 @@ def alone(scene: spec.Scene) -> spec.Scene:
 def body_of(scene: spec.Scene, driven: Drive) -> tuple[bodies.Body, np.ndarray, np.ndarray]:
     """Return the developed body, and masks of its world's joints and edges that it has.
 
-    It is at rest as it starts. Raises `ValueError` if it is no valid body.
+    Its rest shape is its shape at the start. Raises `ValueError` if it is no valid body.
     """
     body, rods = spec.shape(scene.body), driven.world.rods
     nodes = np.asarray(world.grown_nodes(driven.world))
@@ -98,6 +98,7 @@ def refine(
     positions = half.body.positions - half.body.positions[half.nodes].mean(0) + middle
     start = build.build_start(wide, box, positions)
     angle = np.tile(half.body.rest_angle, (4 * len(rest.angle), 1))
+    # Twice halfway between times: four fine steps for each coarse one.
     angle[:, half.joints] = _between(_between(np.asarray(rest.angle)))
     length = _between(_between(np.asarray(rest.length)))[:, half.edges]
     task = search.Task(box, start, None, length=2 * extent(body))
@@ -149,14 +150,15 @@ def at_full_strength(scene: spec.Scene, body: bodies.Body | None = None) -> sear
 def reciprocal(rest: Rest) -> Rest:
     """Return the first half of the rest shapes, then the same shapes back again."""
     steps = len(rest.angle)
-    there = np.arange(steps)
-    times = np.minimum(there, steps - 1 - there)
+    number = np.arange(steps)
+    times = np.minimum(number, steps - 1 - number)
     return Rest(jnp.asarray(rest.angle)[times], jnp.asarray(rest.length)[times])
 
 
 def _with(scene: spec.Scene, body: bodies.Body | None, **form: Any) -> search.Task:
     coupling = scene.coupling.model_copy(update=form)
     changed = scene.model_copy(update={"coupling": coupling})
+    # The rest shapes are given: no genome develops.
     return replace(build.build_task(changed, body=body), encoding=None)
 
 

@@ -1,4 +1,4 @@
-"""Anatomy: where each node is in the body at rest.
+"""Anatomy: the place of each node in the body at rest.
 
 A limb is a maximal filament between nodes whose degree is not 2; a loop without branches is one
 limb. A limb leads from its end nearer the first node of its piece to the other. The body's axis
@@ -17,7 +17,7 @@ from .layout import pieces
 from .shape import distances
 
 TOLERANCE = 1e-6
-"""Share of a creature's size below which a distance from its axis or its middle is none."""
+"""Share of a creature's size below which a distance from its axis or middle counts as 0."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Anatomy:
 
 def anatomy(body: Body) -> Anatomy:
     """Return the anatomy of every creature of a body."""
-    found = np.zeros((6, len(body.positions)))
+    values = np.zeros((6, len(body.positions)))
     paths = _paths(body)
     limbs = _limbs(body, paths)
     for member in range(body.count):
@@ -59,14 +59,14 @@ def anatomy(body: Body) -> Anatomy:
         own = [limb for limb in limbs if body.member[limb[0]] == member]
         along, number = _along(body, own), _numbers(body, own, middle, tolerance)
         away = _cleared(p[:, 1] - middle[1], tolerance)
-        found[:, nodes] = [
+        values[:, nodes] = [
             _means(own, along, len(body.positions))[nodes],
             paths[nodes] / max(paths[nodes].max(), 1e-12),
             np.sign(away),
             _means(own, number, len(body.positions))[nodes],
             *((p - 0.5 * (low + high)) / (0.5 * size)).T,
         ]
-    return Anatomy(*found)
+    return Anatomy(*values)
 
 
 def _paths(body: Body) -> np.ndarray:
@@ -79,7 +79,7 @@ def _paths(body: Body) -> np.ndarray:
 
 
 def _limbs(body: Body, paths: np.ndarray) -> list[list[int]]:
-    """Return the nodes of each limb in turn; a closed one ends at its first node."""
+    """Return the nodes of each limb, in their order; a closed limb ends at its first node."""
     neighbours: list[list[int]] = [[] for _ in body.positions]
     for first, second in body.edges.tolist():
         neighbours[first].append(second)
@@ -106,12 +106,12 @@ def _along(body: Body, limbs: list[list[int]]) -> list[np.ndarray]:
         frozenset(edge): cells
         for edge, cells in zip(body.edges.tolist(), body.rest_length.tolist(), strict=True)
     }
-    found = []
+    positions = []
     for limb in limbs:
         steps = [length[frozenset(pair)] for pair in pairwise(limb)]
-        way = np.concatenate([[0.0], np.cumsum(steps)])
-        found.append(2 * way / way[-1] - 1)
-    return found
+        path = np.concatenate([[0.0], np.cumsum(steps)])
+        positions.append(2 * path / path[-1] - 1)
+    return positions
 
 
 def _numbers(
@@ -120,6 +120,7 @@ def _numbers(
     """Return the number of each limb, −1 to 1."""
     means = [body.positions[_nodes(limb)].mean(0) - middle for limb in limbs]
     x, y = _cleared(np.array(means).reshape(-1, 2), tolerance).T
+    # Directions that differ by rounding errors alone keep the order of their limbs.
     direction = np.round(np.where(y == 0, 0.0, exact.angle(y, x)), 6)
     ranks = np.empty(len(limbs))
     ranks[np.argsort(direction, kind="stable")] = np.arange(len(limbs))
@@ -131,6 +132,7 @@ def _means(limbs: list[list[int]], values: list, count: int) -> np.ndarray:
     total, times = np.zeros(count), np.zeros(count)
     for limb, one in zip(limbs, values, strict=True):
         nodes = _nodes(limb)
+        # A value of the limb, or one for each node, of which a closed limb has one too many.
         total[nodes] += np.broadcast_to(one, len(limb))[: len(nodes)]
         times[nodes] += 1
     return total / np.maximum(times, 1)
@@ -142,4 +144,5 @@ def _nodes(limb: list[int]) -> list[int]:
 
 
 def _cleared(values: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return values with 0 in place of those below the tolerance, which are rounding errors."""
     return np.where(np.abs(values) < tolerance, 0.0, values)

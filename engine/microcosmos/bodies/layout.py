@@ -51,10 +51,10 @@ def layout(body: Body) -> Layout:
 
 
 def is_exact(body: Body, theta_feedback: float | int, nu_c: Any) -> bool:
-    """Return whether the rest shape is the shape, so that no constraint needs a sweep.
+    """Return whether shape matching meets all constraints, so that none needs a sweep.
 
-    So it is at full stiffness and strength, where edge angles follow the geometry, for a body
-    that can be laid out.
+    It does for a body that can be laid out, at full stiffness and strength, if edge angles
+    follow the geometry.
     """
     stiff = all(np.all(one == 1) for one in (body.stretch, body.shear, body.bend))
     small = len(body.positions) <= MAX_NODES
@@ -75,16 +75,16 @@ def _inverse(pairs: np.ndarray, count: int) -> np.ndarray:
         np.add.at(squares, (one, other), -1)
     piece = pieces(pairs, count)
     together = piece[:, None] == piece[None]
-    found = exact.inverse(squares + together / together.sum(1))
-    return found[:, second] - found[:, first]
+    inverse = exact.inverse(squares + together / together.sum(1))
+    return inverse[:, second] - inverse[:, first]
 
 
 def pieces(edges: np.ndarray, nodes: int) -> np.ndarray:
     """Number the connected pieces of a graph, in the order of their first nodes."""
     lowest = np.arange(nodes)
     while True:
-        found = lowest.copy()
-        np.minimum.at(found, edges, lowest[edges].min(1, keepdims=True))
-        if np.array_equal(found, lowest):
+        lower = lowest.copy()
+        np.minimum.at(lower, edges, lowest[edges].min(1, keepdims=True))
+        if np.array_equal(lower, lowest):
             return np.unique(lowest, return_inverse=True)[1]
-        lowest = found
+        lowest = lower

@@ -62,10 +62,11 @@ def _between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def thinned(body: Body, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions and edges of about `most` nodes: ends, branches, and some in between."""
+    """Return positions and edges of about `most` nodes: ends, branches and nodes in between."""
     every = -(-len(body.positions) // most)
     if every == 1:
         return body.positions, body.edges
+    # Ends and branches are always kept, so that a drawing has the form of the body.
     chosen = np.bincount(body.edges.ravel(), minlength=len(body.positions)) != 2
     chosen[::every] = True
     number = np.cumsum(chosen) - 1
@@ -91,6 +92,7 @@ def _follow(node: int, edge: int, edges, incident, chosen, visited: set[int]) ->
     """Return the first chosen node along a path of edges, which are marked as visited."""
     while True:
         visited.add(edge)
+        # The other end of the edge, and below the other edge of the node: both have two.
         node = int(edges[edge].sum()) - node
         if chosen[node]:
             return node

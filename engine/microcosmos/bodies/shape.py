@@ -1,11 +1,13 @@
-"""Bodies from nodes and edges, at rest as they are drawn."""
+"""Construction of bodies from nodes and edges, at rest as they are drawn."""
 
 import heapq
-from typing import TypedDict
+from math import inf, sqrt
+from typing import Any, TypedDict
 
 import numpy as np
 
 from .. import exact
+from ..invalid import InvalidField
 from .graph import Body
 
 
@@ -33,14 +35,14 @@ def from_edges(
     neighbours on both sides. By default `arc` is the path from the first node along the edges,
     and `rest_length` (also where NaN) the drawn length.
     """
-    positions, edges = np.asarray(positions, float), np.asarray(edges, int).reshape(-1, 2)
+    positions, edges = rows_of_two("positions", positions), _pairs(edges)
     joints = joints_of(positions, edges)
     v = positions[edges[:, 1]] - positions[edges[:, 0]]
     angle = exact.angle(v[:, 1], v[:, 0])
     length = exact.length(v[:, 0], v[:, 1])
     if rest_length is not None:
         length = np.where(np.isnan(rest_length), length, rest_length)
-    return Body(
+    body = Body(
         positions=positions,
         edges=edges,
         joints=joints,
@@ -51,6 +53,31 @@ def from_edges(
         bend=np.broadcast_to(bend, len(joints)).astype(float),
         arc=_arc(len(positions), edges, length) if arc is None else arc,
     )
+    if len(loose := np.setdiff1d(np.arange(len(positions)), edges)):
+        raise InvalidField("edges", f"must join every node; node {loose[0]} is in none.")
+    return body
+
+
+def rows_of_two(name: str, given: Any) -> np.ndarray:
+    """Return places in double precision. Raise `InvalidField` unless they are rows (x, y)."""
+    rows = np.asarray(given)
+    if rows.ndim != 2 or rows.shape[1] != 2 or rows.dtype.kind not in "iuf":
+        raise InvalidField(
+            name, f"must be rows (x, y) of numbers, got {rows.dtype} in shape {rows.shape}."
+        )
+    return rows.astype(float)
+
+
+def _pairs(given: Any) -> np.ndarray:
+    edges = np.asarray(given)
+    if edges.size == 0:  # A body without edges is refused as such.
+        return np.zeros((0, 2), int)
+    if edges.ndim != 2 or edges.shape[1] != 2 or edges.dtype.kind not in "iu":
+        raise InvalidField(
+            "edges",
+            f"must be pairs of whole numbers, got {edges.dtype} in shape {edges.shape}.",
+        )
+    return edges.astype(int)
 
 
 def wrap(angle: np.ndarray) -> np.ndarray:
@@ -64,16 +91,16 @@ def joints_of(positions: np.ndarray, edges: np.ndarray) -> np.ndarray:
     for number, (first, second) in enumerate(edges.tolist()):
         for node, leaves in ((first, 1), (second, 0)):
             if not 0 <= node < len(positions):
-                raise ValueError(
-                    f"`edges` must be pairs of nodes 0 to {len(positions) - 1}, got {node}."
+                raise InvalidField(
+                    "edges", f"must be pairs of nodes 0 to {len(positions) - 1}, got {node}."
                 )
             met[node].append((leaves, number))
     pairs = []
-    for node, found in enumerate(met):
-        if len(found) == 2:
-            pairs.append([number for _, number in sorted(found)])
-        elif len(found) > 2:
-            pairs.extend(_cyclic(node, [number for _, number in found], positions, edges))
+    for node, at_node in enumerate(met):
+        if len(at_node) == 2:
+            pairs.append([number for _, number in sorted(at_node)])
+        elif len(at_node) > 2:
+            pairs.extend(_cyclic(node, [number for _, number in at_node], positions, edges))
     return np.array(pairs, int).reshape(-1, 2)
 
 
@@ -81,24 +108,39 @@ def _cyclic(node: int, met: list[int], positions: np.ndarray, edges: np.ndarray)
     """Return pairs of neighbours among a node's edges, anticlockwise."""
     far = np.sum(edges[met], 1) - node
     v = positions[far] - positions[node]
-    round_about = np.array(met)[np.argsort(exact.angle(v[:, 1], v[:, 0]), kind="stable")]
-    return np.stack([round_about, np.roll(round_about, -1)], 1).tolist()
+    turning = np.array(met)[np.argsort(exact.angle(v[:, 1], v[:, 0]), kind="stable")]
+    return np.stack([turning, np.roll(turning, -1)], 1).tolist()
 
 
 def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0) -> np.ndarray:
     """Return the cells along edges from `start` to every node; infinite without a path."""
-    neighbours: list[list[tuple[int, float]]] = [[] for _ in range(nodes)]
+    found = _walked(_neighbours(nodes, edges, length), start)
+    distance = np.full(nodes, np.inf)
+    distance[list(found)] = list(found.values())
+    return distance
+
+
+Neighbours = list[list[tuple[int, float]]]
+"""The neighbours of each node, and the lengths of the edges to them."""
+
+
+def _neighbours(nodes: int, edges: np.ndarray, length: np.ndarray) -> Neighbours:
+    neighbours: Neighbours = [[] for _ in range(nodes)]
     for (first, second), cells in zip(edges.tolist(), length.tolist(), strict=True):
         neighbours[first].append((second, cells))
         neighbours[second].append((first, cells))
-    distance = np.full(nodes, np.inf)
-    distance[start], waiting = 0, [(0.0, start)]
+    return neighbours
+
+
+def _walked(neighbours: Neighbours, start: int) -> dict[int, float]:
+    """Return the cells along edges from `start` to the nodes of its piece."""
+    distance, waiting = {start: 0.0}, [(0.0, start)]
     while waiting:
-        here, node = heapq.heappop(waiting)
+        passed, node = heapq.heappop(waiting)
         for other, cells in neighbours[node]:
-            if here + cells < distance[other]:
-                distance[other] = here + cells
-                heapq.heappush(waiting, (here + cells, other))
+            if passed + cells < distance.get(other, inf):
+                distance[other] = passed + cells
+                heapq.heappush(waiting, (passed + cells, other))
     return distance
 
 
@@ -112,15 +154,28 @@ def _arc(nodes: int, edges: np.ndarray, length: np.ndarray) -> np.ndarray:
 def extent(body: Body) -> float:
     """Return the longest path along edges between two nodes, in cells.
 
-    The path is found from the node farthest from the first node: exact without loops, and for
-    one loop, of which the shorter way counts.
+    The path is found from the node farthest from a piece's first node: exact without loops, and
+    for one loop, of which the shorter way counts.
     """
-    farthest, _ = _farthest(body, 0)
-    return _farthest(body, farthest)[1]
+    neighbours = _neighbours(len(body.positions), body.edges, body.rest_length)
+    longest, met = 0.0, set[int]()
+    for start in range(len(neighbours)):
+        if start not in met:
+            piece = _walked(neighbours, start)
+            met |= piece.keys()
+            # In a tree, the node farthest from any node is an end of the longest path.
+            end = max(sorted(piece), key=piece.__getitem__)
+            longest = max(longest, *_walked(neighbours, end).values())
+    return longest
 
 
-def _farthest(body: Body, start: int) -> tuple[int, float]:
-    distance = distances(len(body.positions), body.edges, body.rest_length, start)
-    distance[np.isinf(distance)] = -1.0
-    last = int(np.argmax(distance))
-    return last, float(distance[last])
+def reach(body: Body) -> float:
+    """Return the largest distance between nodes when filaments are straight, in cells.
+
+    Unconnected filaments lie as far apart as they are drawn.
+    """
+    positions, longest = body.positions, extent(body)
+    if np.isfinite(distances(len(positions), body.edges, body.rest_length)).all():
+        return longest
+    squares = max(float(np.sum((positions - one) ** 2, 1).max()) for one in positions)
+    return max(longest, sqrt(squares))

@@ -6,13 +6,17 @@ from typing import Unpack
 
 import numpy as np
 
+from ..invalid import InvalidField
 from .builders import arc, chain, ring
 from .graph import Body
 from .shape import Stiffness, from_edges
 
 Gait = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""From times in periods to deviations (time, joint) of rest angles in radians, and relative
-deviations (time, edge) of rest lengths."""
+"""A function from times in periods to deviations of the rest shape.
+
+It returns deviations (time, joint) of rest angles in rad, and relative deviations (time, edge)
+of rest lengths.
+"""
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ def worm(
     waves: float = 1.0,
     **stiffness: Unpack[Stiffness],
 ) -> Swimmer:
-    """A filament with a bending wave from its first node to its last.
+    """Return a filament with a bending wave from its first node to its last.
 
     The joint at share s of the way bends by `amplitude` sin 2π (`waves` s − t) radians. The
     worm swims against the wave, its first node ahead. "A similar sinusoidal wave propagation
@@ -58,7 +62,7 @@ def tadpole(
     waves: float = 1.0,
     **stiffness: Unpack[Stiffness],
 ) -> Swimmer:
-    """A ring with a tail, along which a bending wave runs away from the ring.
+    """Return a ring with a tail, along which a bending wave runs away from the ring.
 
     Joints between edges of the tail bend like a worm's; the others keep their angle. The
     tadpole swims head first, "reaching lower speeds because of the drag caused by its head"
@@ -81,7 +85,7 @@ def ray(
     amplitude: float = 0.8,
     **stiffness: Unpack[Stiffness],
 ) -> Swimmer:
-    """A filament whose middle joint bends by `offset` + `amplitude` sin 2π t radians.
+    """Return a filament whose middle joint bends by `offset` + `amplitude` sin 2π t radians.
 
     The motion is reciprocal: without inertia the ray must not move (Purcell 1977, the scallop
     theorem). "Beating via a single time-dependent angle constraint" (Microcosmos paper).
@@ -105,7 +109,7 @@ def jellyfish(
     phase: float = 0.25,
     **stiffness: Unpack[Stiffness],
 ) -> Swimmer:
-    """An open circle that bends and stretches uniformly.
+    """Return an open circle that bends and stretches uniformly.
 
     Angles deviate by `bending` sin 2π t of themselves, lengths by `stretching`
     sin 2π (t + `phase`); at a quarter of a period the motion is not reciprocal. The opening is
@@ -132,7 +136,7 @@ def cilia(
     power: float = 0.75,
     **stiffness: Unpack[Stiffness],
 ) -> Swimmer:
-    """A ring with hairs on both flanks that beat together, mirrored about the x axis.
+    """Return a ring with hairs on both flanks that beat together, mirrored about the x axis.
 
     In the share `power` of a period each hair swings stiffly at its root from `amplitude`
     radians forward (to +x) to as much backward. Then it returns while its joints bend by up
@@ -166,7 +170,7 @@ def _stroke(time, amplitude: float, curl: float, power: float) -> tuple[np.ndarr
 
 def _roots(body_nodes: int, hairs: int) -> np.ndarray:
     if hairs < 2 or hairs % 2:
-        raise ValueError(f"`hairs` must be an even number from 2 on, got {hairs}.")
+        raise InvalidField("hairs", f"must be an even number from 2 on, got {hairs}.")
     flank = np.arange(1, hairs // 2 + 1) / (hairs // 2 + 1)
     nodes = np.round(flank * body_nodes / 2).astype(int)
     return np.concatenate([nodes, (body_nodes - nodes)[::-1]])

@@ -25,6 +25,8 @@ def build_encoding(scene: spec.Scene, room: tuple[int, int]) -> genomes.Encoding
 
 def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> genomes.Controls:
     """Build a controller's inputs at all nodes and times, and the meaning of its outputs."""
+    # The stroke grows from rest, so that no blow hits the fluid at the start
+    # (docs/reproduction.md).
     rise = np.maximum(control.ramp * control.period, 1)
     waves = control.waves if isinstance(control, NetworkInputs) else None
     sites, path = build_sites(control, body)
@@ -66,9 +68,6 @@ def _encoding(
     match control:
         case spec.Control():
             return genomes.CPPNControl(controls, room, control.recurrent)
-        case spec.Weights():
-            layers = genomes.Layers(control.sizes, control.activation, control.scale)
-            return genomes.Weights(controls, layers)
         case spec.Direct():
             reshaped = {"rest_angle", "rest_length"} & set(control.traits)
             return genomes.Direct(
@@ -96,6 +95,3 @@ def _encoding(
                 unit=control.position == "unit",
                 softest=control.softest,
             )
-        case spec.Grown():
-            layout = bodies.layout(body)
-            return genomes.Grown(controls, room, control.traits, control.min_nodes, layout)

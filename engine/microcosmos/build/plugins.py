@@ -1,22 +1,35 @@
-"""Build measures, encodings and swimmers of plug-ins, with checks of what they return."""
+"""Build named measures, and encodings, swimmers and emitters of plug-ins, and check their
+results."""
 
+from collections.abc import Callable
+from dataclasses import is_dataclass
+from functools import partial
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
 from .. import genomes, plugins, search, spec
 from ..bodies import swimmers
+from ..measures import MEASURES
+from ..spec.emitters import PluginEmitter
 
 
 def build_measures(scene: spec.Scene) -> tuple[search.Measure, ...]:
-    """Build the plug-in measures of a scene, by name."""
-    task, found = scene.task, dict(scene.plugins)
-    kinds = dict.fromkeys(found, "descriptor")
+    """Build the named measures of a scene: built-in ones, then those of plug-ins by name."""
+    task, versions = scene.task, dict(scene.plugins)
+    kinds = dict.fromkeys(versions, "descriptor")
     if task.plugin is not None:
-        found[task.fitness], kinds[task.fitness] = task.plugin, "fitness"
-    return tuple(_measure(kinds[name], name, found[name]) for name in sorted(found))
+        versions[task.fitness], kinds[task.fitness] = task.plugin, "fitness"
+    built_in = [
+        search.Measure(name, _checked(name, MEASURES[name].of)) for name in scene.measures
+    ]
+    return (
+        *built_in,
+        *(_measure(kinds[name], name, versions[name]) for name in sorted(versions)),
+    )
 
 
 def measures_of(scene: spec.Scene) -> tuple[str, ...]:
@@ -31,14 +44,18 @@ def plugin_versions(scene: spec.Scene) -> dict[str, Any]:
 
 def _measure(kind: str, name: str, version: spec.PluginVersion) -> search.Measure:
     plugin = plugins.find((kind,), name, version.source)
+    called = partial(plugin, settings=version.settings)
+    return search.Measure(name, _checked(name, called))
 
+
+def _checked(name: str, function: Any) -> Callable[[search.Motion], Array]:
     def of(motion: search.Motion) -> Array:
-        found = _array(name, plugin(motion, settings=version.settings))
-        if found.shape != ():
-            raise plugins.Broken(f"{name} must return one number, got shape {found.shape}")
-        return found.astype(motion.path.dtype)
+        value = _array(name, function(motion))
+        if value.shape != ():
+            raise plugins.Broken(f"{name} must return one number, got shape {value.shape}")
+        return value.astype(motion.path.dtype)
 
-    return search.Measure(name, of)
+    return of
 
 
 def build_act(control: spec.PluginControl, controls: genomes.Controls) -> Any:
@@ -48,10 +65,10 @@ def build_act(control: spec.PluginControl, controls: genomes.Controls) -> Any:
     needed = (len(controls.joint_nodes), len(controls.edges))
 
     def act(genes: Array, clock: genomes.Clock) -> tuple[Array, Array]:
-        found = plugin(genes, clock, settings=version.settings)
-        if not isinstance(found, tuple | list) or len(found) != 2:
+        outputs = plugin(genes, clock, settings=version.settings)
+        if not isinstance(outputs, tuple | list) or len(outputs) != 2:
             raise plugins.Broken(f"{name} must return two arrays, for joints and for edges")
-        angle, length = (_array(name, one) for one in found)
+        angle, length = (_array(name, one) for one in outputs)
         shapes = tuple((len(clock.phase), count) for count in needed)
         if (angle.shape, length.shape) != shapes:
             raise plugins.Broken(
@@ -68,12 +85,12 @@ def swimmer_of(gait: spec.Gait) -> swimmers.Swimmer:
     if gait.plugin is None:
         return swimmers.SWIMMERS[gait.swimmer]()
     plugin = plugins.find(("gait",), gait.swimmer, gait.plugin.source)
-    found = plugin(settings=gait.plugin.settings)
-    if not isinstance(found, swimmers.Swimmer):
+    swimmer = plugin(settings=gait.plugin.settings)
+    if not isinstance(swimmer, swimmers.Swimmer):
         raise plugins.Broken(
-            f"{gait.swimmer} must return a `swimmers.Swimmer`, got {type(found).__name__}"
+            f"{gait.swimmer} must return a `swimmers.Swimmer`, got {type(swimmer).__name__}"
         )
-    return found
+    return swimmer
 
 
 def strokes_of(gait: spec.Gait, time: np.ndarray) -> tuple[swimmers.Swimmer, Any, Any]:
@@ -87,6 +104,28 @@ def strokes_of(gait: spec.Gait, time: np.ndarray) -> tuple[swimmers.Swimmer, Any
             f"{np.shape(angle)} and {np.shape(length)}"
         )
     return swimmer, angle, length
+
+
+def build_plugin_emitter(
+    chosen: PluginEmitter, problem: search.emitters.Problem
+) -> search.Emitter:
+    """Build the emitter of a plug-in. Raise `Broken` if it differs from its declaration."""
+    name, emits = chosen.operator, chosen.emits
+    plugin = plugins.find(("emitter",), name, chosen.plugin.source)
+    emitter = plugin(problem, settings=chosen.plugin.settings)
+    if not isinstance(emitter, search.Emitter):
+        raise plugins.Broken(f"{name} must return an emitter, got {type(emitter).__name__}")
+    if emitter.slots != problem.slots:
+        raise plugins.Broken(f"{name} must have {problem.slots} `slots`, got {emitter.slots}")
+    if isinstance(emitter, search.emitters.Learner) != bool(emits.gradients):
+        raise plugins.Broken(f"{name} must declare `gradients` if it learns by them, only then")
+    if emits.learns == "nothing":
+        state = jax.eval_shape(lambda: emitter.init(key=jax.random.key(0)))
+        if state is not None or not is_dataclass(emitter):
+            raise plugins.Broken(
+                f"{name} must be a dataclass without a state, or declare what it `learns`"
+            )
+    return emitter
 
 
 def _array(name: str, value: Any) -> Array:

@@ -1,9 +1,11 @@
-"""Build the world, the body and the task of a scene."""
+"""Build the world, the body and the task of a scene, its creatures' identities and programs."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -15,17 +17,70 @@ from .. import (
     fluid,
     genomes,
     groups,
+    naming,
     search,
     spec,
     world,
 )
 from ..bodies import extent, is_exact
 from ..device import array
-from ..naming import FORMS
+from ..fields import steric
+from ..measures import FORMS
+from ..spec.control import NetworkInputs
 from ..spec.search import MEASURED
 from .encodings import build_encoding
 from .plugins import build_measures, strokes_of
-from .surroundings import build_barrier, build_start, build_surroundings
+
+
+def build_surroundings(box: spec.World, dtype: Any = jnp.float32) -> fluid.Surroundings:
+    """Build the walls of the fluid, and the force that keeps a flow up."""
+    solid, flow = box.solid, build_flow(box)
+    around = fluid.Surroundings(solid=None if solid is None else array(solid))
+    if flow is None:
+        return around
+    # The kernel has a collision for a uniform force and another for a field (docs/physics.md).
+    force = array(flow.force, dtype)
+    return replace(around, **{"force" if force.ndim == 1 else "force_field": force})
+
+
+def build_flow(box: spec.World) -> fluid.Developed | None:
+    """Build the flow of a box; None if the fluid starts at rest."""
+    flow, size = box.flow, (box.width, box.height)
+    if flow is None:
+        return None
+    if flow.kind == "vortices":
+        return fluid.vortices(size, flow.speed, box.viscosity, flow.vortices)
+    kind = fluid.poiseuille if flow.kind == "poiseuille" else fluid.shear
+    return kind(size, flow.speed, box.viscosity)
+
+
+def build_start(box: spec.World, place: world.World, positions: np.ndarray) -> world.State:
+    """Build the start: bodies at `positions`, the fluid at rest or in its flow.
+
+    Around obstacles the flow starts as it is without them.
+    """
+    dtype = place.viscosity.dtype
+    at_rest = jax.jit(world.at_rest)  # One program instead of forty.
+    start = at_rest(place, array(positions, dtype))
+    flow = build_flow(box)
+    if flow is None:
+        return start
+    solid = place.surroundings.solid
+    planes = fluid.developed(flow, box.viscosity)
+    if solid is not None:
+        planes = tuple(jnp.where(solid, 0.0, plane) for plane in planes)
+    planes = tuple(jnp.asarray(plane, dtype) for plane in planes)
+    return replace(start, populations=planes)
+
+
+def build_barrier(box: spec.World, dtype: Any) -> fields.Barrier | None:
+    """Build the barrier that keeps bodies out of solid cells; None without such cells."""
+    solid = box.solid
+    if solid is None:
+        return None
+    away = array(fields.away(solid), dtype)
+    return fields.Barrier(away, array(steric.LIMIT, dtype))
+
 
 PROJECTIONS = {
     "none": coupling.unprojected,
@@ -69,7 +124,7 @@ def build_task(
         extent(body),
         placements=build_placements(scene.world),
         places=build_places(scene.world, dtype),
-        plugin_measures=build_measures(scene),
+        named_measures=build_measures(scene),
         actuators=build_actuators(scene.control, body, dtype),
         period=build_period(scene.control),
         form=build_form(body),
@@ -81,8 +136,8 @@ def build_form(body: bodies.Body) -> tuple[float, ...]:
     """Build the measures of form of a body that does not grow."""
     pieces = len(np.unique(bodies.pieces(body.edges, len(body.positions))))
     every = np.ones(len(body.positions), bool), np.ones(len(body.edges), bool)
-    found = bodies.growth.form(body.positions, body.edges, *every, pieces=pieces)
-    return tuple(float(np.float32(found[name])) for name in FORMS)
+    measures = bodies.growth.form(body.positions, body.edges, *every, pieces=pieces)
+    return tuple(float(np.float32(measures[name])) for name in FORMS)
 
 
 def build_actuators(
@@ -125,7 +180,7 @@ def build_placements(box: spec.World) -> jnp.ndarray | None:
 
 
 def matching_of(body: spec.Body) -> Matching:
-    """Return what builds the shape matching of a body; one that a plan grew has soft joints."""
+    """Return the builder of a body's shape matching; grown bodies may have soft joints."""
     return build_soft_matching if isinstance(body, spec.GrownBody) else build_matching
 
 
@@ -173,7 +228,7 @@ def build_world(
 def build_matching(
     body: bodies.Body, theta_feedback: float, nu_c: Any, dtype: Any = jnp.float32
 ) -> filaments.Layout | None:
-    """Build what meets constraints in closed form; None where they are swept."""
+    """Build the layout that meets constraints in closed form; None where they are swept."""
     return build_layout(body, dtype) if is_exact(body, theta_feedback, nu_c) else None
 
 
@@ -181,21 +236,21 @@ def build_soft_matching(
     body: bodies.Body, theta_feedback: float, nu_c: Any, dtype: Any = jnp.float32
 ) -> filaments.Layout:
     """Build shape matching in which each joint bends as softly as the body has it."""
-    found = build_layout(body, dtype)
+    layout = build_layout(body, dtype)
     soft = bool(np.any(body.bend < 1))
-    return replace(found, bend=array(body.bend, dtype)) if soft else found
+    return replace(layout, bend=array(body.bend, dtype)) if soft else layout
 
 
 def build_layout(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Layout:
     """Build the layout of bodies as device arrays."""
-    found = bodies.layout(body)
-    piece = array(found.piece, jnp.int32)
+    layout = bodies.layout(body)
+    piece = array(layout.piece, jnp.int32)
     return filaments.Layout(
-        angle=array(found.angle, dtype),
-        rest_angle=array(found.rest_angle, dtype),
-        turned=array(found.turned, dtype),
-        placed=array(found.placed, dtype),
-        pieces=groups.Groups(piece, int(found.piece.max()) + 1, ascending=False),
+        angle=array(layout.angle, dtype),
+        rest_angle=array(layout.rest_angle, dtype),
+        turned=array(layout.turned, dtype),
+        placed=array(layout.placed, dtype),
+        pieces=groups.Groups(piece, int(layout.piece.max()) + 1, ascending=False),
     )
 
 
@@ -207,7 +262,7 @@ def build_limits(form: spec.Coupling, viscosity: float, dtype: Any) -> world.Lim
 
 
 def build_steric(steric: spec.Steric | None, dtype: Any) -> fields.Steric | None:
-    """Build the repulsion between nodes, if there is any."""
+    """Build the repulsion between nodes; None without it."""
     if steric is None:
         return None
     return fields.Steric(
@@ -220,7 +275,7 @@ def build_steric(steric: spec.Steric | None, dtype: Any) -> fields.Steric | None
 def build_energy(
     energy: spec.Energy | None, size: tuple[int, int], dtype: Any
 ) -> fields.Energy | None:
-    """Build the packets of energy, if there are any."""
+    """Build the packets of energy; None without them."""
     if energy is None:
         return None
     packets = fields.Packets(energy.packets, energy.width, energy.amplitude, energy.seed)
@@ -271,5 +326,63 @@ def build_stroke(gait: spec.Gait, steps: int, dtype: Any = jnp.float32) -> filam
     )
 
 
+# `array` moves a number to the device; `jnp.asarray` of a Python number compiles a program.
 def _scalar(value: float | None, dtype: Any) -> Any:
     return None if value is None else array(value, dtype)
+
+
+def identity_template(scene: spec.Scene) -> dict[str, Any]:
+    """Return the identity of a scene's creatures without their genes; a gait has none."""
+    whole = scene.model_dump(mode="json")
+    # Limits as numbers: the default of an empty limit must not change a creature.
+    limits = {
+        "max_displacement": scene.coupling.displacement_limit(scene.world.viscosity),
+        "max_force": scene.coupling.force_limit(scene.world.viscosity),
+    }
+    return {
+        "format": naming.FORMAT,
+        "genome": _genome(scene.control),
+        "world": whole["world"] | {"coupling": whole["coupling"] | limits},
+        "body": whole["body"],
+        "task": whole["task"],
+    }
+
+
+def _genome(control: spec.Controller | spec.Gait | spec.Fold) -> dict[str, Any]:
+    written = control.model_dump(mode="json")
+    if isinstance(control, spec.Gait):
+        return {"encoding": "gait", **written}
+    genome: dict[str, Any] = {"encoding": control.encoding, "control": written}
+    if isinstance(control, NetworkInputs):
+        genome |= {"inputs": list(control.inputs), "outputs": list(control.outputs)}
+    return genome
+
+
+def build_block(scene: spec.Scene, room: tuple[int, int] | None = None):
+    """Build the compiled program that evaluates a block of genotypes in a scene."""
+    task = build_task(scene, room=room)
+    return search.block_program(partial(search.evaluate, task))
+
+
+def build_disturbed_block(scene: spec.Scene, room: tuple[int, int] | None = None):
+    """Build the compiled program that evaluates genotypes under disturbed conditions."""
+    task = build_task(scene, room=room)
+    return search.block_program(
+        lambda given: search.disturbance.evaluate_disturbed(task, *given)
+    )
+
+
+def build_stroke_block(scene: spec.Scene):
+    """Build the compiled program that simulates a scene's gait in a block of conditions."""
+    gait = scene.control
+    assert isinstance(gait, spec.Gait)
+    rest = build_stroke(gait, scene.task.steps)
+    task = build_task(scene)
+    return search.block_program(partial(search.swim, task, rest, period=gait.period))
+
+
+def build_point(scene: spec.Scene) -> search.Conditions:
+    """Build the conditions of one point of a gait sweep."""
+    viscosity = scene.world.viscosity
+    limits = build_limits(scene.coupling, viscosity, jnp.float32)
+    return search.Conditions(jnp.float32(viscosity), limits)

@@ -1,18 +1,13 @@
 """The command line: each module registers its commands. JAX is loaded only to compute."""
 
 from . import (
-    archive,
     cluster,
-    compare,
     creature,
     doctor,
     draw,
-    draw_groups,
     exporting,
+    groups,
     manage,
-    modules,
-    monitor,
-    physical,
     pictures,
     reproject,
     run,

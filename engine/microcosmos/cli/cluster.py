@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 from typer import Argument, Option
 
-from .app import CACHE, app, console, fail, failing
-from .modules import Modules
+from ..archive.atomic import write_whole
+from .app import CACHE, Modules, app, fail, failing, refuse_input, say
 
 group = typer.Typer(
     help="Compute one run on many hosts: start a scheduler, join it with helpers, and give "
@@ -20,10 +20,11 @@ group = typer.Typer(
 app.add_typer(group, name="cluster")
 
 Address = Annotated[str, Argument(metavar="URL", help="Like tls://host:8786.")]
+CERTIFICATE = "MICROCOSMOS_CLUSTER_CERTIFICATE"
 Certificate = Annotated[
     Path | None,
     Option(
-        envvar="MICROCOSMOS_CLUSTER_CERTIFICATE",
+        envvar=CERTIFICATE,
         help="File of `microcosmos cluster certificate`, the same on every host.",
     ),
 ]
@@ -38,10 +39,9 @@ def certificate(
 
     with failing(file):
         write_certificate(file)
-    console.print(
+    say(
         f"{file} is valid for a year. Copy it to every host, and keep it secret: "
-        "whoever has it may run programs on all of them.",
-        soft_wrap=True,
+        "whoever has it may run programs on all of them."
     )
 
 
@@ -51,7 +51,7 @@ def scheduler(url: Address, certificate: Certificate = None) -> None:
     from ..cluster.scheduler import serve
 
     with failing("cluster"):
-        serve(url, certificate, lambda address: console.print(f"Helpers may join {address}"))
+        serve(url, certificate, lambda address: say(f"Helpers may join {address}"))
 
 
 @group.command("join")
@@ -72,17 +72,21 @@ def join(
     from ..cluster import security
     from ..cluster.join import join, sbatch
 
+    inputs = [*(module or ()), *([certificate] if certificate else [])]
+    refuse_input(slurm, *inputs, option="--slurm")
     with failing("cluster"):
+        # A wrong address is refused before a batch file is written or a helper is started.
         security(url, certificate)
     options = ["--certificate", str(certificate.resolve())] if certificate else []
     for file in module or ():
+        # Whole paths: helpers of a batch file may start in another folder.
         options += ["--module", str(file.resolve())]
     if slurm:
         words = ["microcosmos", "cluster", "join", url, *options]
         words += ["--processes", str(processes)] if processes else []
         with failing(slurm):
-            slurm.write_text(sbatch(shlex.join(words), gpus=not processes))
-        console.print(f"Change {slurm} to fit your cluster, then: sbatch {slurm}")
+            write_whole(slurm, sbatch(shlex.join(words), gpus=not processes).encode())
+        say(f"Change {slurm} to fit your cluster, then: sbatch {slurm}")
         return
     logging.basicConfig(format="%(asctime)s %(message)s")
     logging.getLogger("microcosmos").setLevel(logging.INFO)

@@ -1,9 +1,9 @@
-"""The command `figure`: pictures, films, and figures for print."""
+"""The commands `figure`: pictures, films, and figures of runs and of groups for print."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import typer
 from rich.progress import Progress
@@ -11,15 +11,33 @@ from typer import Argument, Option
 from typer.core import TyperGroup
 
 from ..archive import creature_h5
-from ..archive.beside import beside
 from ..archive.file import HDF5, load
-from ..archive.quantities import Real
+from ..archive.file_names import beside
+from ..quantities.real import Real
+from ..statistics import Comparison, across, compare
+from ..statistics.effects import Bootstrap
+from ..statistics.groups import refuse_mixed
+from ..statistics.measures import DEFAULT
 from ..viz.figures import drawing, experiments
-from ..viz.figures.verdicts import WORDS, verdicts
+from ..viz.figures.reading import grouped
+from ..viz.figures.sheet import WORDS, verdicts
 from ..viz.film import check, export
 from ..viz.replay_file import read_replay
-from .app import CACHE, app, console, fail, failing, with_options
-from .modules import Modules, load_modules, prepare_engine
+from .app import (
+    CACHE,
+    Modules,
+    app,
+    console,
+    fail,
+    failing,
+    load_modules,
+    prepare_engine,
+    refuse_input,
+    with_options,
+)
+from .groups import Measures, Resamples, Seed, read_groups
+
+T = TypeVar("T", str, Path)
 
 DEFAULT_COMMAND = "file"
 """The command that runs if none is named."""
@@ -29,6 +47,7 @@ class Figures(TyperGroup):
     """Take an argument that names no command as a file to draw."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        # `figure FILE OUT` works without the name of a command (docs/figures.md).
         named = bool(args) and self.get_command(ctx, args[0]) is not None
         return super().resolve_command(ctx, args if named else [DEFAULT_COMMAND, *args])
 
@@ -54,7 +73,7 @@ Axes = Annotated[
 
 
 REAL = ("length", "period")
-"""Options of those figures alone whose captions state physical units."""
+"""Options of the figures whose captions state physical units."""
 
 
 @contextmanager
@@ -103,6 +122,7 @@ def of_file(
     `figure FILE OUT` without a command name runs this command.
     """
     load_modules(module)
+    refuse_input(out, file, *filter(None, [audit]), option="OUT")
     with failing(file):
         _draw(file, out, audit)
     print(out)
@@ -119,7 +139,7 @@ def archive(
 ) -> None:
     """Draw the map of an archive: bins, or the cells of a tessellation."""
     show_paths(
-        drawing.archive(file, _beside(file, out, "archive"), options, names_in(axes), colour)
+        drawing.archive(_beside(file, out, "archive"), options, file, names_in(axes), colour)
     )
 
 
@@ -140,14 +160,15 @@ def sheet(
     module: Modules = None,
 ) -> None:
     """Draw a contact sheet of gaits: the fittest swimmer of each region of the archive."""
+    # The swimmers are simulated, perhaps with a plug-in (docs/figures.md).
     prepare_engine(module)
     with Progress(console=console, transient=True) as bar:
         task = bar.add_task("simulating elites", total=None)
         show_paths(
             drawing.contact(
-                file,
                 _beside(file, out, "sheet"),
                 options,
+                file,
                 names_in(axes),
                 (columns, rows),
                 moments,
@@ -166,8 +187,8 @@ def kinds(
     moments: Annotated[int, Option(min=2, max=32, help="Number of moments of a stroke.")] = 8,
 ) -> None:
     """Draw film strips of the kinds of motion in runs of one spec, the fittest first."""
-    given, out = split(files)
-    show_paths(drawing.kinds(given, out, options, limit, moments))
+    given, out = archive_files(files)
+    show_paths(drawing.kinds(out, options, given, limit, moments))
 
 
 @figures.command()
@@ -182,17 +203,25 @@ def lineage(
     ] = None,
 ) -> None:
     """Draw the pedigree of an archive's elites, and the ancestors of one of them."""
-    show_paths(drawing.tree(file, _beside(file, out, "lineage"), options, cell))
+    show_paths(drawing.tree(_beside(file, out, "lineage"), options, file, cell))
 
 
-def split(files: Sequence[Path]) -> tuple[list[Path], Path]:
+def archive_files(files: Sequence[Path]) -> tuple[list[Path], Path]:
     """Return the files to read, and the one to write."""
-    *given, out = files
-    if not given:
-        fail(f"FILE... OUT needs an archive file and a figure to write; got only {out}")
-    if missing := [str(file) for file in given if not file.is_file()]:
+    given, out = split(files)
+    if missing := [str(file) for file in given if not file.exists()]:
         fail(f"FILE must exist; not found: {', '.join(missing)}")
-    return given, out
+    if others := [str(file) for file in given if not file.is_file()]:
+        fail(f"FILE must be a file, no folder or pipe; got {', '.join(others)}")
+    return given, Path(out)
+
+
+def split(given: Sequence[T]) -> tuple[list[T], T]:
+    """Return what is read, and the file to write."""
+    *sources, out = given
+    if not sources:
+        fail(f"FILE... OUT needs files or groups, and a figure to write; got only {out}")
+    return sources, out
 
 
 def show_paths(written: list[Path]) -> None:
@@ -209,20 +238,21 @@ def names_in(text: str | None) -> list[str] | None:
 
 
 def _draw(file: Path, out: Path, audit: Path | None) -> None:
-    """A creature file is simulated first; the file of a run holds its table or its archive."""
+    """Draw a creature file, which is simulated first, or the table or archive of a run."""
     data = file.read_bytes()
     of_run = creature_h5.is_of_run(data)
     if audit and (of_run or out.suffix.lower() != ".png"):
         raise ValueError(f"`--audit` needs a .png of a creature, got {out} of {file}")
     trusted = verdicts([audit] if audit else [])
     if of_run and "archive" in load(data)[0]:
-        drawing.archive(file, out, drawing.Print(), None, "fitness")
+        drawing.archive(out, drawing.Print(), file, None, "fitness")
         return
     if of_run:
-        experiments.save(experiments.of(data), out)
+        experiments.save(experiments.figure_of(data), out)
         return
 
     check(out)
+    # A creature file, in either form; a replay is drawn without a simulation.
     if data.startswith((b"{", HDF5)):
         from ..device import prepare
         from ..viz.replay import record
@@ -241,3 +271,91 @@ def _noted(replay: bytes, trusted: Mapping[str, bool]) -> dict[str, str]:
         audited = ", ".join(one[:12] for one in trusted)
         raise ValueError(f"`--audit` needs the audit of {name[:12]}, got that of {audited}")
     return {"note": WORDS[trusted[name]]}
+
+
+GroupsAndOut = Annotated[
+    list[str],
+    Argument(
+        metavar="[NAME=]RUN,RUN... OUT",
+        help="Groups as for `compare`, then a .pdf, .svg or .png file.",
+    ),
+]
+
+
+@figures.command()
+@with_options(printed, omit=("palette",), width="double")
+def curves(
+    options: drawing.Print,
+    files: Annotated[
+        list[str],
+        Argument(metavar="FILE... OUT", help="Archive files, or groups as NAME=FILE,FILE..."),
+    ],
+    shown: Annotated[
+        str, Option(help="Some of qd_score, coverage, best, mean, evaluations …, with commas.")
+    ] = "best,coverage,qd_score",
+    against: Annotated[str, Option(help="evaluations or generations.")] = "evaluations",
+) -> None:
+    """Draw the curves of runs: the median and a band over the seeds of each spec or group."""
+    *given, out = files
+    if any("=" in text for text in given):
+        groups = read_groups(given)
+        refuse_mixed(groups)  # Unlike in `compare`, runs may be unfinished.
+    else:
+        paths, _ = archive_files(list(map(Path, files)))
+        groups = grouped([drawing.open_archive(file) for file in paths])
+    show_paths(drawing.progress(Path(out), options, groups, names_in(shown) or [], against))
+
+
+@figures.command()
+@with_options(printed, omit=("palette",), width="double")
+def box(
+    options: drawing.Print,
+    groups: GroupsAndOut,
+    measure: Measures = None,
+    resamples: Annotated[int, Resamples] = 9999,
+    seed: Annotated[int, Seed] = 0,
+) -> None:
+    """Draw every run of groups as a point, with medians and quartiles; tests in the caption."""
+    found, out = _compared(groups, measure, (resamples, seed))
+    show_paths(drawing.boxes(out, options, found))
+
+
+@figures.command()
+@with_options(printed, omit=("palette",), width="double")
+def parameter(
+    options: drawing.Print,
+    field: Annotated[str, Argument(help="A field of the spec, such as world.viscosity.")],
+    groups: GroupsAndOut,
+    measure: Measures = None,
+    resamples: Annotated[int, Resamples] = 9999,
+    seed: Annotated[int, Seed] = 0,
+) -> None:
+    """Draw measures against a field in which specs differ, over the seeds of each spec."""
+    found, out = _compared(groups, measure, (resamples, seed))
+    show_paths(drawing.parameter(out, options, found, field))
+
+
+@figures.command()
+@with_options(printed, omit=("palette", *REAL))
+def profile(
+    options: drawing.Print,
+    groups: GroupsAndOut,
+    task: Annotated[
+        list[str], Option(metavar="FIELD", help="Field that tells tasks apart; repeatable.")
+    ],
+    measure: Annotated[str, Option(help="A curve, such as qd_score.")] = "qd_score",
+    resamples: Annotated[int, Resamples] = 9999,
+    seed: Annotated[int, Seed] = 0,
+) -> None:
+    """Draw the share of runs above a score over several tasks, with bands."""
+    given, out = split(groups)
+    groups_of_runs = read_groups(given)
+    over_tasks = across(groups_of_runs, measure, task, Bootstrap(resamples, seed))
+    show_paths(drawing.profiles(Path(out), options, over_tasks, groups_of_runs[0].runs[0]))
+
+
+def _compared(
+    texts: Sequence[str], measures: Sequence[str] | None, drawn: tuple[int, int]
+) -> tuple[Comparison, Path]:
+    given, out = split(texts)
+    return compare(read_groups(given), measures or DEFAULT, Bootstrap(*drawn)), Path(out)

@@ -1,33 +1,32 @@
 """The command `export`: runs as files that other programs read."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Annotated
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from typer import Argument, Option
 
-from ..archive.quantities import Real
 from ..client import Client
-from ..client.exporting import extra, opened
-from ..exports import local
-from ..exports.citation import Publication
-from ..exports.crate import File
+from ..client.formatting import visible
+from ..client.run import extra, opened
+from ..exports import formats
+from ..exports.crate import File, Publication
 from ..exports.formats import Format, Tell, refuse_without_columns
 from ..exports.run_file import RunFile
-from ..naming import LICENCE
+from ..quantities.real import Real
 from ..sizes import size
-from .app import console, failing
-from .remote import RUNS, say, server_command
+from ..viz.figures import drawing
+from .app import console, failing, say
+from .remote import RUNS, connecting, server_command
 
 PICTURE = "archive.png"
 
 
-@server_command(RUNS, "export")
+@server_command(RUNS, "export", make=connecting)
 def export_runs(
-    client: Client,
+    connect: Callable[[], Client],
     runs: Annotated[
         list[str],
         Argument(metavar="RUN...", help="Archive files, or ids of runs on a server."),
@@ -43,7 +42,9 @@ def export_runs(
         list[str] | None,
         Option(metavar='"FAMILY, GIVEN"', help="Author of a RO-Crate; repeatable."),
     ] = None,
-    licence: Annotated[str, Option(help="Licence of a RO-Crate, by SPDX.")] = LICENCE,
+    licence: Annotated[
+        str, Option(help="Licence of a RO-Crate, by SPDX; default: the file's.")
+    ] = "",
     length: Annotated[
         str | None,
         Option(help="Real length of a body, such as 1mm, for columns in SI units."),
@@ -57,49 +58,50 @@ def export_runs(
     with failing(), _progress(len(runs)) as tell:
         if Real.of(length, period) is not None:
             refuse_without_columns(form)  # Before anything is read.
-        found = {one.name: (one, more) for one, more in (_open(client, r, form) for r in runs)}
-        if len(found) < len(runs):
+        opened = {
+            one.name: (one, more) for one, more in (_open(connect, r, form) for r in runs)
+        }
+        if len(opened) < len(runs):
             raise ValueError(f"RUN... needs different names; got {', '.join(runs)}")
-        files = [one for one, _ in found.values()]
-        more = {name: extra for name, (_, extra) in found.items()}
+        files = [one for one, _ in opened.values()]
+        more = {name: extra for name, (_, extra) in opened.items()}
         options = {"publication": publication, "extra": more, "zip": zip, "tell": tell}
-        written = local.export(files, form, to, length=length, period=period, **options)
+        written = formats.export(files, form, to, length=length, period=period, **options)
     for path in written:
         print(f"{path}  {size(path.stat().st_size)}")
     if form is Format.ro_crate and not author:
         say("No --author is given: add the authors to CITATION.cff before publishing.")
 
 
-def _open(client: Client, run: str, form: Format) -> tuple[RunFile, dict[str, File]]:
+def _open(
+    connect: Callable[[], Client], run: str, form: Format
+) -> tuple[RunFile, dict[str, File]]:
     """Read a file if there is one, else a run on the server."""
     path, whole = Path(run), form is Format.ro_crate
+    # A file first: its name may look like the beginning of an id.
     if path.is_file():
         with failing(path):
-            file = local.of_path(path)
+            file = formats.of_path(path)
             file.attributes  # noqa: B018 It refuses other files.
-        more = local.best_creature(path) if whole else {}
+        more = formats.best_creature(path, file) if whole else {}
     elif path.suffix:
         raise ValueError(
             f"RUN must be an archive file or the id of a run; no file {run} exists"
         )
     else:
-        one = client.run(run)
+        one = connect().run(run)
         file = opened(one, form)
-        more = extra(one) if whole else {}
+        more = extra(one, file) if whole else {}
     return file, more | (_picture(file) if whole else {})
 
 
 def _picture(run: RunFile) -> dict[str, File]:
     """Return the map of an archive with elites, if matplotlib is installed."""
-    from ..viz.figures import drawing
-
-    if not len(run.archive()["cell"]):
-        return {}
-    with TemporaryDirectory() as folder, suppress(ImportError):
-        path, out = Path(folder, "run.h5"), Path(folder, PICTURE)
-        path.write_bytes(run.data)
-        drawing.archive(path, out, drawing.Print(width="double"), None, "fitness")
-        return {PICTURE: File(out.read_bytes(), "the map of the archive")}
+    # A crate without matplotlib lacks the picture alone.
+    with suppress(ImportError):
+        if len(run.archive()["cell"]):
+            drawn = drawing.picture(run.data, drawing.Print(width="double"))
+            return {PICTURE: File(drawn, "the map of the archive")}
     return {}
 
 
@@ -109,11 +111,15 @@ def _progress(count: int) -> Iterator[Tell]:
     if not console.is_terminal:
         yield lambda file: None
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        MofNCompleteColumn(),
+    )
     with Progress(*columns, console=console, transient=True) as progress:
         bar = progress.add_task("reading", total=None)
 
         def tell(file: str) -> None:
-            progress.update(bar, description=file, advance=1)
+            progress.update(bar, description=visible(file), advance=1)
 
         yield tell

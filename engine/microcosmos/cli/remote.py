@@ -3,7 +3,8 @@
 import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
+from functools import cache
 from typing import Annotated, Any
 
 import typer
@@ -13,8 +14,8 @@ from rich.text import Text
 from typer import Argument, Option
 
 from ..client import Client, NotFound, Refused, Run, ServerError, Sweep
-from ..client.formatting import counts_as_text, quoted, status_of
-from .app import app, console, with_options
+from ..client.formatting import counts_as_text, quoted, status_of, visible, visible_lines
+from .app import app, say, with_options
 
 RUNS = "Runs on a server"
 SHARING = "Sharing and access"
@@ -47,40 +48,51 @@ Ids = Annotated[
 
 
 @contextmanager
-def _connected(url: Url = None, token: Token = None) -> Iterator[Client]:
-    """Yield a client; print a failure to standard error and exit with status 1."""
+def connecting(url: Url = None, token: Token = None) -> Iterator[Callable[[], Client]]:
+    """Yield a function that returns a client: a command for files may need none.
+
+    Print a failure to standard error and exit with status 1.
+    """
     try:
-        with Client(url, token) as client:
-            yield client
-    except (ServerError, ValueError, OSError) as error:
+        with ExitStack() as stack:
+            yield cache(lambda: stack.enter_context(Client(url, token)))
+    except BrokenPipeError:  # The reader of the output has seen enough: Click ends quietly.
+        raise
+    except (ServerError, ValueError, OSError, ImportError) as error:
         say(str(error), "red")
         raise typer.Exit(1) from None
     except KeyboardInterrupt:
+        # The status of shells for Ctrl-C: 128 + SIGINT.
         raise typer.Exit(130) from None
 
 
+@contextmanager
+def _connected(url: Url = None, token: Token = None) -> Iterator[Client]:
+    with connecting(url, token) as connect:
+        yield connect()
+
+
 def server_command(
-    panel: str | None = None, name: str | None = None, group: typer.Typer = app
+    panel: str | None = None,
+    name: str | None = None,
+    group: typer.Typer = app,
+    make: Callable[..., AbstractContextManager[Any]] = _connected,
 ) -> Callable[[Callable[..., None]], None]:
     """Register a command that gets a client and the options --url and --token."""
 
     def register(command: Callable[..., None]) -> None:
-        group.command(name, rich_help_panel=panel)(with_options(_connected)(command))
+        group.command(name, rich_help_panel=panel)(with_options(make)(command))
 
     return register
 
 
-def say(text: str, style: str | None = None) -> None:
-    """Print to standard error, for people; lines are not wrapped."""
-    console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
-
-
 def show(document: Any) -> None:
     """Print JSON to standard output, for scripts."""
-    print(json.dumps(document, indent=1, ensure_ascii=False))
+    print(visible_lines(json.dumps(document, indent=1, ensure_ascii=False)))
 
 
 def stdout() -> Console:
+    # Rich takes a file or a pipe to be 80 columns wide, and would break rows.
     return Console() if sys.stdout.isatty() else Console(width=WIDE)
 
 
@@ -97,7 +109,9 @@ def show_table(names: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
 
 
 def _cell(value: Any) -> Text:
-    return value if isinstance(value, Text) else Text("" if value is None else str(value))
+    if isinstance(value, Text):
+        return value
+    return Text("" if value is None else visible(str(value)))
 
 
 def find(client: Client, id: str, deleted: bool = False) -> Run | Sweep:
@@ -109,6 +123,7 @@ def find(client: Client, id: str, deleted: bool = False) -> Run | Sweep:
     for look in (client.run, client.sweep):
         with suppress(NotFound):
             both.append(look(id, deleted=deleted))
+        # A whole id is that of one run: sweeps need not be asked.
         if both and both[0].id == id.strip().lower():
             break
     if not both:

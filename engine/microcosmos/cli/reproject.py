@@ -1,9 +1,7 @@
 """The command `reproject`: a run's creatures as an archive over any other axes."""
 
-import csv
-import io
 import json as json_module
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from enum import StrEnum
 from pathlib import Path
@@ -14,14 +12,15 @@ from typer import Argument, Option
 
 from ..archive.atomic import write_whole
 from ..archive.axes import Axis, of_spec
+from ..archive.export import as_csv
 from ..archive.file import load
 from ..archive.population import Creatures, creatures, of_file
 from ..archive.principal import NAME, Component
 from ..archive.reprojection import COMPONENTS, FITNESS, Reprojection, over, reproject
 from ..client import Client, Run
-from ..viz.figures import reprojected
-from .app import fail
-from .remote import RUNS, Json, say, server_command, show, show_table
+from ..viz.figures import maps
+from .app import fail, failing, refuse_input, say
+from .remote import RUNS, Json, connecting, server_command, show, show_table
 
 PCA = "pca"
 """Short for the axes of the two largest principal components."""
@@ -37,9 +36,9 @@ class Of(StrEnum):
     elites = "elites"
 
 
-@server_command(RUNS, "reproject")
+@server_command(RUNS, "reproject", make=connecting)
 def project(
-    client: Client,
+    connect: Callable[[], Client],
     source: Annotated[
         str,
         Argument(metavar="RUN_OR_FILE", help="Id of a run on a server, or an archive file."),
@@ -71,20 +70,23 @@ def project(
     A creature that lost its cell can be the best of a cell of other axes. An axis of the
     archive itself keeps its ends and bins; any other has the ends of its measure.
     """
+    refuse_input(out, Path(source))
+    refuse_input(figure, Path(source), option="--figure")
     names = list(COMPONENTS) if axes == PCA else _names(axes)
     sizes = [_whole(text) for text in _names(bins)]
     of_these = _names(components_of)
-    found, present, known, title = _read(client, source, of, names, of_these)
+    found, present, known, title = _read(connect, source, of, names, of_these)
     main, learned = over(found, names, known, sizes, of_these or None)
     shown = {HISTORY if present else ELITES: main}
     if present:
         shown = {ELITES: reproject(main.creatures.among(present), main.axes), **shown}
     _print(shown, learned, json)
+    # After the figures: standard output is complete even if a file cannot be written.
     if out:
         write_whole(out, table(main).encode())
         say(f"{out}: {len(main.last):,} elites")
     if figure:
-        for path in reprojected.draw(figure, shown, learned, title):
+        for path in maps.draw_reprojections(figure, shown, learned, title):
             say(str(path))
 
 
@@ -93,26 +95,33 @@ Source = tuple[Creatures, list[str], dict[str, Axis], str]
 
 
 def _read(
-    client: Client, source: str, of: Of, names: Sequence[str], components_of: Sequence[str]
+    connect: Callable[[], Client],
+    source: str,
+    of: Of,
+    names: Sequence[str],
+    components_of: Sequence[str],
 ) -> Source:
     """Read a file if there is one, else a run on the server."""
     file = Path(source)
     if file.is_file():
         return _of_file(file, of)
     learns = any(map(NAME.fullmatch, names))
+    # Components are made of all measures, unless some are named; other axes need theirs alone.
     wanted = None if learns and not components_of else [*names, *components_of]
-    return _of_run(client.run(source), of, wanted)
+    return _of_run(connect().run(source), of, wanted)
 
 
 def _of_file(file: Path, of: Of) -> Source:
-    data = file.read_bytes()
-    found = of_file(data)
+    with failing(file):
+        data = file.read_bytes()
+        elites, attributes = of_file(data), load(data)[1]
+        known = of_spec(json_module.loads(attributes["spec"]))
     if of is Of.history:
         say(
-            f"{file} has the measures of its {len(found):,} elites only, so replaced creatures "
-            "are not projected. A run on a server has those of all that ever entered."
+            f"{file} has the measures of its {len(elites):,} elites only, so replaced "
+            "creatures are not projected. A run on a server has those of all that ever entered."
         )
-    return found, [], of_spec(json_module.loads(load(data)[1]["spec"])), file.name
+    return elites, [], known, file.name
 
 
 def _of_run(run: Run, of: Of, wanted: Sequence[str] | None) -> Source:
@@ -139,11 +148,7 @@ def table(one: Reprojection) -> str:
     columns |= {"creature": [name.decode() for name in found.names[rows]]}
     columns |= {"generation": found.generation[rows], FITNESS: found.fitness[rows]}
     columns |= {name: column[rows] for name, column in found.measures.items()}
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*(list(column) for column in columns.values()), strict=True))
-    return text.getvalue()
+    return as_csv(columns)
 
 
 def _print(shown: dict[str, Reprojection], learned: Sequence[Component], as_json: bool) -> None:

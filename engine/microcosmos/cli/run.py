@@ -1,35 +1,58 @@
-"""Commands that carry out runs without a server: evolve, refine."""
+"""Commands that carry out runs without a server: evolve, refine; initial creatures."""
 
 import json
-import signal
+import os
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    SpinnerColumn,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 from typer import Argument, Option
 
+from .. import plugins
 from ..archive import choices as choices_file
-from ..archive.beside import beside
-from ..archive.creature_h5 import read
-from ..archive.file import read_table
+from ..archive import creature_h5, export, initial
+from ..archive.atomic import place
+from ..archive.creature import parse
+from ..archive.file import load, read_table
+from ..archive.file_names import beside
+from ..archive.report import INFEASIBLE
 from ..doctor.machine import memory_bytes
 from ..sinks.address import parse_all
-from ..spec import Archive, Refinement, Spec, estimate
-from .app import CACHE, CreaturePath, OtherDevice, Set, app, console, fail, failing
-from .cluster import Certificate
-from .initial import From, with_initial
-from .modules import Modules, load_modules
+from ..spec import Archive, Evolution, Refinement, Spec, estimate
+from ..spec import parse as parse_spec
+from ..viz.figures import reading
+from .app import (
+    CreaturePath,
+    Modules,
+    OtherDevice,
+    Set,
+    app,
+    fail,
+    failing,
+    load_modules,
+    prepare_jax,
+    progress_bar,
+    refuse_input,
+    say,
+    stopping,
+)
+from .cluster import CERTIFICATE, Certificate
 from .specs import changed, read_spec, spec_path, with_generations
+
+CreatureFile = dict[str, Any]
+
+From = Annotated[
+    list[Path] | None,
+    Option(
+        "--from",
+        exists=True,
+        dir_okay=False,
+        help="Start from a creature file, or from all elites of an archive; repeatable.",
+    ),
+]
 
 Choices = Annotated[
     Path | None,
@@ -53,7 +76,11 @@ SinkAddresses = Annotated[
 @app.command()
 def evolve(
     spec: Annotated[
-        str, Argument(help="Spec file, name of a preset, or address of a shared archive.")
+        str,
+        Argument(
+            help="Spec file, - for standard input, name of a preset, or address of a shared "
+            "archive."
+        ),
     ],
     archive: Annotated[
         Path | None, Option("--out", help="Archive file; default: beside the spec.")
@@ -66,7 +93,8 @@ def evolve(
     ] = None,
     settings: Set = None,
     checkpoint_seconds: Annotated[
-        float, Option(min=0.0, help="Seconds between two checkpoints.")
+        float,
+        Option(min=0.0, help="Seconds between two checkpoints; 0: after each generation."),
     ] = 60.0,
     other_device: OtherDevice = False,
     begin_from: From = None,
@@ -81,22 +109,26 @@ def evolve(
 ) -> None:
     """Carry out a run. If the archive file exists, continue it."""
     load_modules(module)
+    # A mistyped address is refused before JAX starts.
     with failing("--sink"):
         parse_all(sink or ())
     chosen = changed(read_spec(spec), settings or [])
     if generations is not None:
         chosen = with_generations(chosen, generations)
     path = archive or beside(spec_path(spec), ".h5")
-    evaluations = prepare_run(chosen, path)
+    _refuse_unused(cluster, certificate)
+    chosen_by_people = _read_choices(choices)
+    inputs = [Path(spec), *(begin_from or ()), *([choices] if choices else [])]
+    evaluations = prepare_run(chosen, path, inputs)
     from ..device import device_kind
 
     chosen, initial = with_initial(chosen, begin_from or (), path)
-    console.print(f"{evaluations:,} evaluations on {device_kind()} into {path}")
-    options = {**_over(cluster, certificate), "choices": _read_choices(choices)}
+    say(f"{evaluations:,} evaluations on {device_kind()} into {path}")
+    options = {**_over(cluster, certificate), "choices": chosen_by_people}
     options["sinks"] = sink or ()
     run_with_progress(chosen, path, checkpoint_seconds, other_device, initial, **options)
     best = beside(path, ".best.json")
-    console.print(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
+    say(f"Done: {path}" + (f"; the best creature: {best}" if best.exists() else ""))
 
 
 @app.command()
@@ -126,30 +158,48 @@ def refine(
     path = out or beside(file, ".refined.h5")
     with failing(file):
         spec = Refinement(
-            creature=read(file.read_bytes()),
+            creature=creature_h5.read(file.read_bytes()),
             archive=_archive(like),
             steps=steps,
             length=length,
             segment=segment,
         )
-    prepare_run(spec, path)
+    prepare_run(spec, path, [file])
     run_with_progress(spec, path, 60.0, other_device)
     _print_comparison(path)
 
 
-def prepare_run(spec: Spec, path: Path) -> int:
+@app.command("plugins")
+def list_plugins(module: Modules = None) -> None:
+    """List plug-ins: names, titles, versions."""
+    load_modules(module)
+    for plugin in plugins.loaded():
+        one = plugin.declaration
+        unit = f" in {one.unit}" if one.unit else ""
+        print(
+            f"{one.name}  {one.kind}  {one.title}{unit}  ({one.source[:12]}, {plugin.location})"
+        )
+
+
+def prepare_run(spec: Spec, path: Path, inputs: Sequence[Path]) -> int:
     """Make the file's folder and start JAX; return the number of evaluations.
 
-    Fail if the folder cannot be made or the memory does not suffice.
+    Fail if the folder cannot be made, the run would write what is no file or an input, or the
+    memory does not suffice.
     """
     with failing("--out needs a folder that can be made"):
         path.parent.mkdir(parents=True, exist_ok=True)
+    with failing("--out"):
+        place(path)
+        best = beside(path, ".best.json")
+        place(best)
+    refuse_input(path, *inputs)
+    refuse_input(best, *inputs)
+    # The system ends a process that outgrows the memory, without a message.
     need, (memory, _) = estimate(spec), memory_bytes()
     if need.memory_bytes > memory:
         fail(f"the run needs about {need.memory_bytes:,} bytes of memory; there are {memory:,}")
-    from ..device import prepare
-
-    prepare(cache=CACHE)
+    prepare_jax()
     return need.evaluations
 
 
@@ -165,22 +215,11 @@ def run_with_progress(
     from .. import experiments
     from ..build import local
 
-    received: list[int] = []
-
-    def note(number: int, frame: object) -> None:
-        received.append(number)
-        signal.signal(number, signal.SIG_DFL)  # The second signal ends it at once.
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, note)
-    columns = [
-        SpinnerColumn(),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
-        TextColumn("{task.description}"),
-    ]
-    with failing(archive), Progress(*columns, console=console) as progress:
+    with (
+        failing(archive),
+        stopping() as received,
+        progress_bar(MofNCompleteColumn(), TimeRemainingColumn()) as progress,
+    ):
         bar = progress.add_task("compiling", total=spec.generations)
 
         def tell(report: Any) -> None:
@@ -197,10 +236,11 @@ def run_with_progress(
                 initial=initial,
                 **options,
             )
+        # The library names no option of the command line.
         except experiments.OtherDevice as error:
             raise ValueError(f"{error} To continue here anyway, add --other-device.") from error
     if not done:
-        console.print(f"Stopped. The same command goes on from {archive}.")
+        say(f"Stopped. The same command goes on from {archive}.")
         raise typer.Exit(130)
 
 
@@ -209,6 +249,12 @@ def _read_choices(path: Path | None) -> dict[int, choices_file.Files] | None:
         return None
     with failing(f"--choices: {path}"):
         return choices_file.parse(path.read_bytes())
+
+
+def _refuse_unused(cluster: str | None, certificate: Path | None) -> None:
+    # The environment may name one for all runs.
+    if certificate and not cluster and str(certificate) != os.environ.get(CERTIFICATE):
+        fail("--certificate needs --cluster, the scheduler whose helpers compute too")
 
 
 def _over(cluster: str | None, certificate: Path | None) -> dict[str, Any]:
@@ -228,29 +274,34 @@ def _summary(report: Any) -> str:
             f"{name.replace('_', ' ')} {f'{value:.4g}' if isinstance(value, float) else value}"
             for name, value in shown
         )
+    if not report.coverage:
+        # A best fitness of 0 would read as a creature that lies still.
+        reasons = "".join(f"  {name}" for name in INFEASIBLE.of(report.summary))
+        return f"no elite: {report.infeasible:,} of {report.evaluations:,} infeasible{reasons}"
     text = (
         f"QD score {report.qd_score:.2f}  coverage {100 * report.coverage:.1f} %  "
         f"best {report.best:.2f}"
     )
-    found = report.summary or {}
-    if "cluster: efficiency" in found:
-        busy = 100 * found["cluster: efficiency"]
-        text = f"{text}  {found['cluster: devices']} devices, {busy:.0f} % busy"
-    if "corrected_qd_score" not in found:
+    summary = report.summary or {}
+    if "cluster.efficiency" in summary:
+        busy = 100 * summary["cluster.efficiency"]
+        text = f"{text}  {summary['cluster.devices']} devices, {busy:.0f} % busy"
+    if "corrected_qd_score" not in summary:
         return text
     return (
-        f"{text}  corrected: QD score {found['corrected_qd_score']:.2f}  coverage "
-        f"{100 * found['corrected_coverage']:.1f} %  hit rate {100 * found['hit_rate']:.1f} %"
+        f"{text}  corrected: QD score {summary['corrected_qd_score']:.2f}  "
+        f"coverage {100 * summary['corrected_coverage']:.1f} %  "
+        f"hit rate {100 * summary['hit_rate']:.1f} %"
     )
 
 
 def _archive(like: str | None) -> Archive:
     if like is None:
         return Archive()
-    found = getattr(read_spec(like), "archive", None)
-    if found is None:
+    bounds = getattr(read_spec(like), "archive", None)
+    if bounds is None:
         fail(f"--like needs a spec with an archive, got {like}")
-    return found
+    return bounds
 
 
 def _print_comparison(path: Path) -> None:
@@ -263,3 +314,56 @@ def _print_comparison(path: Path) -> None:
     best = beside(path, ".best.json")
     name = json.loads(best.read_bytes())["sha256"][:12]
     print(f"{len(rows) - 1} steps into {path}; the creature {name}: {best}")
+
+
+def with_initial(
+    spec: Spec, paths: Sequence[Path], archive: Path
+) -> tuple[Spec, list[CreatureFile]]:
+    """Return the spec that names its initial creatures, and their files.
+
+    A spec that already names creatures keeps them. Fail if one does not fit, or if its file is
+    missing and there is no archive that holds it.
+    """
+    if not paths:
+        count = len(spec.search.initial) if isinstance(spec, Evolution) else 0
+        if count and not archive.exists():
+            fail(f"`search.initial` names {count} creatures: --from needs the files with them")
+        return spec, []
+    if not isinstance(spec, Evolution):
+        fail(f"--from needs a search's spec, got {spec.experiment}")
+    files_by_name = {file["sha256"]: file for path in paths for file in creatures(path)}
+    named = spec.search.initial or sorted(files_by_name)
+    if lacking := [name for name in named if name not in files_by_name]:
+        fail(
+            f"--from needs the creatures that `search.initial` names; got none of {lacking[0]}"
+        )
+    with failing("--from"):
+        search = {**spec.search.model_dump(mode="json"), "initial": named}
+        chosen = parse_spec({**spec.model_dump(mode="json"), "search": search})
+        assert isinstance(chosen, Evolution)
+        files = [files_by_name[name] for name in named]
+        initial.genes_of(chosen, files)
+        return chosen, files
+
+
+def creatures(path: Path) -> list[CreatureFile]:
+    """Return the creatures of a creature file or an archive; fail for any other file."""
+    with failing(f"--from needs a creature file or an archive; {path}"):
+        data = path.read_bytes()
+        if creature_h5.is_of_run(data):
+            return _elites(data)
+        return [creature_h5.read(data)]
+
+
+def _elites(data: bytes) -> list[CreatureFile]:
+    import jax
+
+    from ..build import build
+
+    run = reading.read(data)
+    experiment = build(run.spec)
+    # Row by row they would be fetched from the device over and over.
+    state = jax.device_get(experiment.restore(data, other_device=True))
+    files = [experiment.creature(state, cell) for cell in run.cells.tolist()]  # pyright: ignore
+    terms = export.terms(load(data, only=())[1])
+    return [parse(one | terms) for one in files]

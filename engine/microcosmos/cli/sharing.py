@@ -8,8 +8,8 @@ from typer import Argument, Option
 
 from ..client import Client
 from ..client.connection import LOOPBACK
-from .app import app
-from .remote import SHARING, Ids, Json, say, server_command, show, show_table
+from .app import app, say
+from .remote import SHARING, Ids, Json, server_command, show, show_table
 
 tokens = typer.Typer(help="Create, list and revoke access tokens.", no_args_is_help=True)
 app.add_typer(tokens, name="tokens", rich_help_panel=SHARING)
@@ -32,6 +32,7 @@ def import_(
     """Import creatures from files or shares into a server, which verifies their hashes."""
     for file in files:
         for one in client.import_all(file) if every else [client.import_creature(file)]:
+            # At once: an interrupted import shows what has arrived.
             print(one.sha, flush=True)
 
 
@@ -80,9 +81,13 @@ def unshare(
 @server_command(SHARING)
 def shares(client: Client, json: Json = False) -> None:
     """List your shares."""
-    found = client.shares()
-    links = [{**one.record, "link": one.url} for one in found]
-    _list([one.record for one in found] if json else links, json, "link title state expires_at")
+    published = client.shares()
+    links = [{**one.record, "link": one.url} for one in published]
+    _list(
+        [one.record for one in published] if json else links,
+        json,
+        "link title state expires_at",
+    )
 
 
 @server_command(None, "create", tokens)

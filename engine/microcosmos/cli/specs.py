@@ -1,36 +1,59 @@
 """Specs from files, presets or shares, and fields set by their dotted paths."""
 
 import json
+import math
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import typer
 
-from ..client import shared
+from ..client import sharing
+from ..client import specs as server_specs
+from ..invalid import InvalidField
+from ..json_text import read_json
 from ..spec import Evolution, Spec, parse
 from ..spec.experiments import presets
 from .app import fail, failing
 
+INPUT = "-"
+"""The name of a spec in the standard input."""
+
+
+def standard_input() -> dict[str, Any]:
+    """Return the spec in the standard input. Raise `ValueError` if there is none."""
+    if sys.stdin is None:
+        raise ValueError("standard input must be open for a spec named -")
+    return server_specs.parsed(sys.stdin.buffer.read(), "standard input")
+
 
 def read_spec(name: str) -> Spec:
-    if address := shared.address(name):
-        with failing(name):
-            return parse(shared.spec(address))
+    if address := sharing.address(name):
+        with failing("SPEC"):
+            return parse(sharing.spec(address))
+    if name == INPUT:
+        with failing():
+            return parse(standard_input())
     path = Path(name)
-    if path.is_file():  # A folder may have the name of a preset.
+    # A name may be longer than that of any file, or below a folder that may not be read.
+    with failing("SPEC"):
+        is_file = path.is_file()  # A folder may have the name of a preset.
+    if is_file:
         with failing(path):
-            return parse(json.loads(path.read_bytes()))
-    found = presets().get(name)
-    if found is None:
+            return parse(read_json(path.read_bytes()))
+    preset = presets().get(name)
+    if preset is None:
         fail(f"SPEC needs a file, or one of the presets {', '.join(presets())}; got {name}")
-    return found
+    return preset
 
 
 def spec_path(name: str) -> Path:
     """Return the path beside which the archive of a spec's run is written."""
-    if address := shared.address(name):
+    if address := sharing.address(name):
         return Path(f"share-{address.slug[:8]}")
+    if name == INPUT:
+        return Path("spec")
     return Path(name.replace("/", "-") if name in presets() else name)
 
 
@@ -50,14 +73,17 @@ def changed(spec: Spec, settings: Sequence[str], option: str = "--set") -> Spec:
 def value(text: str, path: str) -> Any:
     """Parse the JSON of a field; return other text as it is."""
     try:
-        found = json.loads(text)
+        parsed = read_json(text)
+    except InvalidField as error:
+        raise typer.BadParameter(f"{path}: {error}") from None
     except ValueError:
         return text
     try:
-        json.dumps(found, allow_nan=False)
+        # Python's JSON reads NaN and Infinity, which JSON and the server do not have.
+        json.dumps(parsed, allow_nan=False)
     except ValueError:
         raise typer.BadParameter(f"{path} needs finite numbers; got {text}") from None
-    return found
+    return parsed
 
 
 def pair(text: str, option: str) -> tuple[str, str]:
@@ -71,6 +97,7 @@ def pair(text: str, option: str) -> tuple[str, str]:
 
 def applied(spec: dict[str, Any], settings: Sequence[str]) -> dict[str, Any]:
     """Return a copy of a spec with some fields set; missing parts are added."""
+    # A deep copy whose parts are plain JSON, which the paths below walk through.
     spec = json.loads(json.dumps(spec))
     for text in settings:
         path, given = pair(text, "--set")
@@ -95,42 +122,46 @@ def patch(settings: Sequence[str]) -> dict[str, Any]:
 
 def grid(sweeps: Sequence[str]) -> dict[str, list[Any]]:
     """Return values by path, each once: a JSON list, or values with commas between them."""
-    found: dict[str, list[Any]] = {}
+    values: dict[str, list[Any]] = {}
     for text in sweeps:
         path, given = pair(text, "--sweep")
-        if path in found:
+        if path in values:
             raise typer.BadParameter(
                 f"--sweep needs a field once, with all its values; got {path} twice"
             )
         whole = value(given, path)
-        parts = given.split(",")
-        found[path] = whole if isinstance(whole, list) else [value(one, path) for one in parts]
-    return found
+        # Other than what was given, it is JSON, whose commas part nothing.
+        parts = [whole] if whole != given else [value(one, path) for one in given.split(",")]
+        values[path] = whole if isinstance(whole, list) else parts
+    return values
 
 
 def region(bounds: Sequence[str]) -> dict[str, list[float]]:
     """Return low and high by axis, each once."""
-    found: dict[str, list[float]] = {}
+    ends: dict[str, list[float]] = {}
     for text in bounds:
         axis, given = pair(text, "--region")
-        if axis in found:
+        if axis in ends:
             raise typer.BadParameter(f"--region needs an axis once; got {axis} twice")
         try:
             low, high = map(float, given.split(":"))
         except ValueError:
+            low = high = math.nan
+        if not (math.isfinite(low) and math.isfinite(high)):
             raise typer.BadParameter(
-                f"--region needs AXIS=LOW:HIGH, such as turning=0:1.5; got {text!r}"
-            ) from None
-        found[axis] = [low, high]
-    return found
+                "--region needs AXIS=LOW:HIGH with finite numbers, such as turning=0:1.5; "
+                f"got {text!r}"
+            )
+        ends[axis] = [low, high]
+    return ends
 
 
 def _part(place: Any, name: str, path: str) -> Any:
     key = _key(place, name, path)
     if isinstance(place, dict) and place.get(name) is None:
         place[name] = {}
-    if isinstance(place, dict) and not isinstance(place[name], dict | list):
-        raise typer.BadParameter(f"{path}: {name} has no fields; it is {place[name]!r}")
+    if not isinstance(place[key], dict | list):
+        raise typer.BadParameter(f"{path}: {name} has no fields; it is {place[key]!r}")
     return place[key]
 
 

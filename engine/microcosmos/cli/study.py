@@ -1,19 +1,15 @@
 """The command `study`: carry out a study from one file, and write its report."""
 
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
+import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 from typer import Argument, Option
 
-from ..archive.beside import beside
+from ..archive.file_names import beside
 from ..client.formatting import duration
-from .app import CACHE, app, console, failing
-from .modules import Modules, load_modules
+from .app import CACHE, Modules, app, failing, load_modules, progress_bar, say, stopping
 from .remote import Token, Url, show_table
 
 if TYPE_CHECKING:
@@ -36,7 +32,8 @@ def study(
         bool, Option("--dry-run", help="Print the runs and what is left, and stop.")
     ] = False,
     checkpoint_seconds: Annotated[
-        float, Option(min=0.0, help="Seconds between two checkpoints of a run.")
+        float,
+        Option(min=0.0, help="Seconds between two checkpoints of a run; 0: each generation."),
     ] = 20.0,
     server: Annotated[
         bool, Option("--server", help="Carry out the runs on the server, and download them.")
@@ -51,29 +48,37 @@ def study(
     """
     load_modules(module)
     with failing(file):
-        from ..study import plan, read, report
-        from ..study.lock import alone
+        from ..study import decode, plan, report
+        from ..study.runs import alone
 
-        found = plan(read(file), folder or beside(file, ".study"), file.parent)
+        source = file.read_bytes()  # Once: the file may change while the runs are carried out.
+        study = decode(source, file.name)
+        planned = plan(study, folder or beside(file, ".study"), file.parent)
         if dry_run:
-            _show(found, processes)
+            _show(planned, processes)
             return
-        with alone(found.folder):
+        # Two processes would write the same checkpoints
+        # (test_a_folder_has_one_study_at_a_time).
+        with alone(planned.folder, "" if folder else file.name):
             if server:
-                _on_server(found, url, token)
+                _on_server(planned, url, token)
             else:
-                _carry_out(found, processes, module or [], checkpoint_seconds)
-            command = f"microcosmos study {file.name}"
-            paths = report.write(found, file.read_text(), command)
+                _carry_out(planned, processes, module or [], checkpoint_seconds)
+            # Names alone: a report has no folders of a machine.
+            modules = [f"--module={one.name}" for one in module or ()]
+            command = shlex.join(["microcosmos", "study", file.name, *modules])
+            paths = report.write(planned, source, command)
     for path in paths[:1]:
         print(path)
-    console.print(f"{len(paths) - 1} files of figures and exports are beside the report.")
+    if others := len(paths) - 1:
+        files = "1 file" if others == 1 else f"{others} files"
+        say(f"Beside the report: {files} of figures and exports.")
 
 
 def _show(plan: "Plan", processes: int) -> None:
     """Print every run with how far it is, and the estimated time of what is left."""
     from ..spec import estimate
-    from ..spec.differences import value_text
+    from ..spec.paths import value_text
     from ..study.local import estimated_seconds
 
     rows, left = [], 0
@@ -88,7 +93,7 @@ def _show(plan: "Plan", processes: int) -> None:
     show_table(("run", "sweep", "case", "seed", "state"), rows)
     seconds = estimated_seconds(plan, processes)
     time = "time unknown until a run is finished" if seconds is None else duration(seconds)
-    console.print(f"{len(rows)} runs; about {left:,} evaluations are left: {time}")
+    say(f"{len(rows)} runs; about {left:,} evaluations are left: {time}")
 
 
 def _carry_out(
@@ -98,14 +103,19 @@ def _carry_out(
     from ..study import local
 
     prepare(cache=CACHE)
-    with _stopping() as stopped, _bar() as progress:
+    with stopping() as stopped, progress_bar() as progress:
         bar = progress.add_task("", total=None)
 
-        def tell(found: local.Progress) -> None:
-            left = found.seconds_left
-            said = f"{found.finished} of {found.runs} runs"
-            said += "" if left is None else f", {duration(left)} left"
-            progress.update(bar, completed=found.done, total=found.work, description=said)
+        def tell(progress_so_far: local.Progress) -> None:
+            left = progress_so_far.seconds_left
+            description = f"{progress_so_far.finished} of {progress_so_far.runs} runs"
+            description += "" if left is None else f", {duration(left)} left"
+            progress.update(
+                bar,
+                completed=progress_so_far.done,
+                total=progress_so_far.work,
+                description=description,
+            )
 
         done = local.carry_out(
             plan,
@@ -117,7 +127,7 @@ def _carry_out(
             cache=CACHE,
         )
     if not done:
-        console.print(f"Stopped. The same command goes on from {plan.folder}.")
+        say(f"Stopped. The same command goes on from {plan.folder}.")
         raise typer.Exit(130)
 
 
@@ -126,7 +136,7 @@ def _on_server(plan: "Plan", url: str | None, token: str | None) -> None:
     from ..client.formatting import counts_as_text
     from ..study import remote
 
-    with Client(url, token) as client, _bar() as progress:
+    with Client(url, token) as client, progress_bar() as progress:
         bar = progress.add_task("", total=len(plan.runs))
 
         def tell(counts: dict[str, int]) -> None:
@@ -134,26 +144,3 @@ def _on_server(plan: "Plan", url: str | None, token: str | None) -> None:
             progress.update(bar, completed=done, description=counts_as_text(counts))
 
         remote.carry_out(plan, client, tell)
-
-
-def _bar() -> Progress:
-    return Progress(
-        SpinnerColumn(), BarColumn(), TextColumn("{task.description}"), console=console
-    )
-
-
-@contextmanager
-def _stopping() -> Iterator[list[int]]:
-    """Yield a list that holds the signals that came; the second one ends the process."""
-    received: list[int] = []
-
-    def note(number: int, frame: Any) -> None:
-        received.append(number)
-        signal.signal(number, signal.SIG_DFL)
-
-    before = {one: signal.signal(one, note) for one in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield received
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -13,8 +13,8 @@ from .errors import (
     Refused,
     ServerError,
 )
+from .polling import Event
 from .replay import Replay
 from .run import Run
 from .sharing import Share
-from .streaming import Event
 from .sweep import Summary, Sweep

@@ -8,9 +8,9 @@ import numpy as np
 from ..archive import poses
 from ..archive.axes import Axis, cells
 from ..archive.export import scaled, unit
+from ..bounds import is_whole
 from ..exports import arrow, dataset
-from ..exports.table import Column, Elites, placed
-from ..exports.tables import bins
+from ..exports.tables import Column, Elites, bins, placed
 from . import columns, drawing
 from .connection import Connection
 from .creature import Creature
@@ -67,6 +67,8 @@ class Archive:
             return None
         cell, fitness = self.cell, self.fitness
         if self.kind == "pool":
+            # Numbers of places do not tell where an elite lies
+            # (test_an_archive_of_places_is_drawn_where_its_elites_lie).
             axes = [Axis(**axis) for axis in self.axes]
             cell, fitness = _fittest(cells(axes, [*self.descriptors.T]), fitness)
         return drawing.archive_map(self.axes, cell, fitness, repr(self)[1:-1])
@@ -80,29 +82,25 @@ class Archive:
     def elite(self, cell: int | Sequence[int]) -> Creature:
         """Return the elite of a cell: by number, or in a grid by its bin along each axis."""
         number = self._number(cell)
-        found = np.flatnonzero(self.cell == number)
-        if not len(found):
+        rows = np.flatnonzero(self.cell == number)
+        if not len(rows):
             raise KeyError(f"cell {cell} is empty; {len(self)} of {self.cells} are filled")
-        return self._nth(int(found[0]))
+        return self._nth(int(rows[0]))
 
     def document(self) -> dict[str, Any]:
         """Return the columns as the server sent them, and the `centroids` of Voronoi cells."""
-        centroids = None
-        if self.kind == "cvt":
-            found = self._connection.read(f"runs/{self.run}/archive/centroids")
-            centroids = found["centroids"]
-        return {**self._columns, "centroids": centroids}
+        return {**self._columns, "centroids": self._centroids()}
 
     def pose_streams(self, cells: Sequence[int]) -> dict[str, bytes]:
         """Return the stored pose streams of the elites of some cells, by creature."""
         path = f"runs/{self.run}/archive/poses"
-        found: dict[str, bytes] = {}
+        streams: dict[str, bytes] = {}
         for first in range(0, len(cells), POSE_CELLS):
             some = ",".join(map(str, cells[first : first + POSE_CELLS]))
             given = {"cells": some, "generation": self.generation}
             data = self._connection.ask("GET", path, params=given).content
-            found |= {poses.decode(one).creature: one for one in poses.unbatched(data)}
-        return found
+            streams |= {poses.decode(one).creature: one for one in poses.unbatched(data)}
+        return streams
 
     def to_pandas(self) -> Any:
         """Return a data frame with pyribs' columns, as `archive.csv` has them, without genes.
@@ -127,7 +125,7 @@ class Archive:
         about = {one["name"]: (one["title"], one["unit"] or "1") for one in self.recorded}
         entered = self.elite_generation
         age = (self.generation - entered).astype(np.int32)
-        found = {
+        columns_by_name = {
             "creature": Column(self.creature, "SHA-256 of the creature's identity"),
             "cell": Column(
                 self.cell, "Place in the container" if self.kind == "pool" else "Cell"
@@ -137,20 +135,22 @@ class Archive:
             "age": Column(age, "Age", "generations"),
         }
         if self.kind == "grid":
-            found |= bins(self.cell, self.axes)
+            columns_by_name |= bins(self.cell, self.axes)
         for name, values in self.measures.items():
             column = Column(values, *about[name], axis=axes.get(name))
-            found[placed(name, found)] = column
+            columns_by_name[placed(name, columns_by_name)] = column
         attributes = {"run": self.run, "generation": self.generation}
-        return Elites(self.kind, self.axes, self.cell, found, self._centroids(), attributes)
+        around = self._centroids()
+        centroids = None if around is None else np.array(around, np.float32)
+        return Elites(self.kind, self.axes, self.cell, columns_by_name, centroids, attributes)
 
-    def _centroids(self) -> np.ndarray | None:
+    def _centroids(self) -> list[list[float]] | None:
         if self.kind != "cvt":
             return None
-        found = self._connection.read(f"runs/{self.run}/archive/centroids")["centroids"]
-        return np.array(found, np.float32)
+        return self._connection.read(f"runs/{self.run}/archive/centroids")["centroids"]
 
     def columns(self) -> dict[str, Any]:
+        # As `archive.export.columns`: pyribs measures distances of a CVT from 0 to 1.
         place = unit if self.kind == "cvt" else scaled
         places = map(place, self.descriptors.T, self.axes)
         return {
@@ -166,15 +166,14 @@ class Archive:
     def _nth(self, index: int) -> Creature:
         return Creature(self._connection, self.creature[index])
 
-    def _number(self, cell: int | Sequence[int]) -> int:
-        bins = [axis["bins"] for axis in self.axes]
-        if isinstance(cell, int | np.integer):
+    def _number(self, cell: Any) -> int:
+        bins, number = [axis["bins"] for axis in self.axes], -1
+        if is_whole(cell):
             number = int(cell)
-        elif self.kind == "grid" and len(cell) == len(bins):
-            inside = all(0 <= place < size for place, size in zip(cell, bins, strict=True))
-            number = int(np.ravel_multi_index(tuple(cell), bins)) if inside else -1
-        else:
-            number = -1
+        elif self.kind == "grid" and np.shape(cell) == (len(bins),):
+            places = zip(cell, bins, strict=True)
+            if all(is_whole(place) and 0 <= place < size for place, size in places):
+                number = int(np.ravel_multi_index(tuple(cell), bins))
         if not 0 <= number < self.cells:
             shape = f", or a bin along each axis of {bins}" if self.kind == "grid" else ""
             raise ValueError(f"`cell` must be from 0 to {self.cells - 1}{shape}; got {cell}")

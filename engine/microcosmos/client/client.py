@@ -1,9 +1,9 @@
 """The client of a Microcosmos server."""
 
-import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
+from os import PathLike
 from pathlib import Path
 from typing import Any, Self, overload
 from uuid import uuid4
@@ -12,14 +12,16 @@ import httpx
 
 from ..archive import creature_h5
 from ..archive.file import HDF5
-from . import shared, specs
+from ..invalid import InvalidField
+from ..json_text import read_json
+from . import arguments, sharing, specs
 from .connection import Connection
 from .creature import Creature
 from .errors import NotFound
+from .polling import Event, events
 from .record import find
 from .run import Run
 from .sharing import Share, expiry, publish
-from .streaming import Event, events
 from .sweep import Sweep
 
 HERE = "http://127.0.0.1:8000"
@@ -29,7 +31,8 @@ class Client:
     """Uses the server at `url`, else at MICROCOSMOS_URL, else on this machine.
 
     The default of `token` is MICROCOSMOS_TOKEN. Requests that fail on their way are repeated
-    for up to `patience` seconds, if that can do no harm.
+    for up to `patience` seconds, if that is safe: 30, or until a first answer three tries,
+    unless it is given.
     """
 
     def __init__(
@@ -37,7 +40,7 @@ class Client:
         url: str | None = None,
         token: str | None = None,
         *,
-        patience: float = 30.0,
+        patience: float | None = None,
         transport: httpx.BaseTransport | None = None,
     ):
         url = url or os.environ.get("MICROCOSMOS_URL") or HERE
@@ -90,12 +93,16 @@ class Client:
         """Queue a spec, a file with one, or a preset by its name.
 
         With `seeds` (a number or a list) or a `grid` (values by the dotted path of a field) it
-        is a sweep. The same `key` with the same spec is the same run, however often it is sent.
+        is a sweep. The same `key` with the same arguments is the same run, however often it is
+        sent.
         `scheduling` may be `priority` (low, normal, high, or for admins urgent), `labels` that
         the worker must have, `may_yield` to urgent runs, and `device_patience`, the seconds
         until another kind of device may continue it.
         """
+        # A request that is repeated after a lost answer makes one run alone
+        # (test_a_request_whose_answer_is_lost_is_repeated_safely).
         document, key = specs.document(self.connection, spec), key or str(uuid4())
+        grid = grid if grid is None else arguments.fields("grid", grid)
         if seeds is None and grid is None:
             # The name is sent at once: a run that was queued without it would be sent again.
             record = self.connection.send(
@@ -105,8 +112,11 @@ class Client:
             return run.change(name=name) if name and not run.name else run
         many = {
             "spec": document,
-            "seeds": seeds if isinstance(seeds, int) else list(seeds or []) or 1,
-            "grid": {path: list(values) for path, values in (grid or {}).items()},
+            "seeds": 1 if seeds is None else _seeds(seeds),
+            "grid": {
+                path: arguments.several(f"grid.{path}", values)
+                for path, values in (grid or {}).items()
+            },
         }
         many |= {"name": name} if name else {}
         made = self.connection.send("POST", "sweeps", many, key=key, **scheduling)
@@ -129,30 +139,33 @@ class Client:
         sort: str = "-created",
     ) -> Iterator[Run]:
         """Yield the runs that match, newest first; pages are read as they are needed."""
-        found = self.connection.items(
+        if sweep is not None and not isinstance(sweep, Sweep):
+            sweep = self.sweep(sweep, deleted=deleted)
+        records = self.connection.items(
             "runs",
-            status=[status] if isinstance(status, str) else list(status),
-            experiment=[experiment] if isinstance(experiment, str) else list(experiment),
+            status=_texts("status", status),
+            experiment=_texts("experiment", experiment),
             tag=tag,
             q=text,
-            sweep=sweep.id if isinstance(sweep, Sweep) else sweep,
+            sweep=sweep and sweep.id,
             deleted=deleted or None,
             sort=sort,
             limit=200,
         )
-        return (Run(self.connection, one) for one in found)
+        return (Run(self.connection, one) for one in records)
 
     def run(self, id: str, *, deleted: bool = False) -> Run:
         """Return the run whose id begins with `id`; raise `NotFound`, `Refused` for several."""
-        found = self.connection.items("runs", q=id, deleted=deleted or None, limit=200)
-        return Run(self.connection, find(self.connection, "runs", id, found))
+        # The server searches for the text; `find` then compares the beginning of ids.
+        candidates = self.connection.items("runs", q=id, deleted=deleted or None, limit=200)
+        return Run(self.connection, find(self.connection, "runs", id, candidates))
 
     def last(self) -> Run:
         """Return the newest run."""
-        found = next(self.runs(), None)
-        if found is None:
+        newest = next(self.runs(), None)
+        if newest is None:
             raise NotFound(f"{self.url} has no runs yet: submit one first.")
-        return found
+        return newest
 
     def sweeps(self) -> Iterator[Sweep]:
         """Yield all sweeps, newest first."""
@@ -164,8 +177,8 @@ class Client:
         Raise `NotFound`, and `Refused` for several.
         """
         lists = [None, True] if deleted else [None]
-        found = chain(*(self.connection.items("sweeps", deleted=one) for one in lists))
-        return Sweep(self.connection, find(self.connection, "sweeps", id, found))
+        candidates = chain(*(self.connection.items("sweeps", deleted=one) for one in lists))
+        return Sweep(self.connection, find(self.connection, "sweeps", id, candidates))
 
     def experiments(self) -> list[dict[str, Any]]:
         """Return the experiments, each with presets and the schema of its spec."""
@@ -173,17 +186,20 @@ class Client:
 
     def creature(self, sha: str) -> Creature:
         """Return the creature of this name. Raise `NotFound` if the server has none."""
-        found = Creature(self.connection, sha)
-        _ = found.file  # The request; an assertion would be left out under `python -O`.
-        return found
+        creature = Creature(self.connection, arguments.name("sha", sha))
+        _ = creature.file  # The request; an assertion would be left out under `python -O`.
+        return creature
 
     def import_creature(self, file: Mapping[str, Any] | str | Path) -> Creature:
         """Import a creature, its file in JSON or HDF5, or the address of a share.
 
         The server verifies the hash.
         """
-        if isinstance(file, str) and (address := shared.address(file)):
-            document = shared.creature(address)
+        if not isinstance(file, Mapping | str | PathLike):
+            needed = "must be a creature file, its path or the address of a share"
+            raise InvalidField("file", f"{needed}; got {file!r:.80}")
+        if isinstance(file, str) and (address := sharing.address(file)):
+            document = sharing.creature(address)
         else:
             document = dict(file) if isinstance(file, Mapping) else creature_file(Path(file))
         return self._imported(document)
@@ -194,10 +210,10 @@ class Client:
 
         Raises `ValueError` for another text, which is no address of a share.
         """
-        at = shared.address(address)
+        at = sharing.address(address) if isinstance(address, str) else None
         if at is None:
-            raise ValueError(f"`address` must be that of a share, got {address!r:.200}")
-        yield from map(self._imported, shared.creatures(at))
+            raise InvalidField("address", f"must be that of a share, got {address!r:.200}")
+        yield from map(self._imported, sharing.creatures(at))
 
     def _imported(self, document: Mapping[str, Any]) -> Creature:
         made = self.connection.send("POST", "creatures", document, key=str(uuid4()))
@@ -206,10 +222,12 @@ class Client:
     def share(self, what: Run | Creature | str, **options: Any) -> Share:
         """Publish a run's archive or a creature, given itself, an id or a SHA-256.
 
-        `options`: `title`, `credit`, `licence`, `days`, `listed`.
+        `options` are those of `sharing.publish`.
         """
         if isinstance(what, Run | Creature):
             return what.share(**options)
+        if not isinstance(what, str):
+            raise InvalidField("what", f"must be a run, a creature or its name; got {what!r}")
         if len(what) == 64:
             return publish(self.connection, {"creature": what}, **options)
         return self.run(what).share(**options)
@@ -220,7 +238,7 @@ class Client:
 
     def unshare(self, slug: str) -> None:
         """Revoke a share, given its slug or its whole address."""
-        slug = slug.rstrip("/").rpartition("/")[2]
+        slug = sharing.slug(slug)
         self.connection.send("DELETE", f"shares/{slug}")
 
     def commons(self) -> list[Share]:
@@ -241,8 +259,8 @@ class Client:
     def revoke_token(self, id: str) -> None:
         """Revoke the token whose id begins with `id`."""
         tokens = self.connection.items("tokens")
-        found = find(self.connection, "tokens", id, tokens, fetch=False)
-        self.connection.send("DELETE", f"tokens/{found['id']}")
+        token = find(self.connection, "tokens", id, tokens, fetch=False)
+        self.connection.send("DELETE", f"tokens/{token['id']}")
 
     def workers(self) -> list[dict[str, Any]]:
         """Return the live workers, with device, memory, load and run of each."""
@@ -250,14 +268,30 @@ class Client:
 
     def events(self, run: str | Run | None = None) -> Iterator[Event]:
         """Yield new events of all runs or of one, without an end."""
-        found = events(self.connection, run.id if isinstance(run, Run) else run)
-        return (event for event in found if event.kind != "beat")
+        if run is not None and not isinstance(run, Run):
+            run = self.run(run)
+        stream = events(self.connection, run and run.id)
+        return (event for event in stream if event.kind != "beat")
+
+
+def _texts(field: str, given: Any) -> list[Any]:
+    """Return one text or several as a list."""
+    return [given] if isinstance(given, str) else arguments.several(field, given)
+
+
+def _seeds(seeds: Any) -> int | list[int]:
+    """Return a number of seeds, or a list of some."""
+    if isinstance(seeds, bool) or not hasattr(seeds, "__iter__"):
+        return arguments.whole("seeds", seeds)
+    if listed := arguments.wholes("seeds", seeds):
+        return listed
+    raise InvalidField("seeds", "must be a number, or a list with at least one; got []")
 
 
 def creature_file(path: Path) -> dict[str, Any]:
     """Read a creature file. Raise `ValueError` for any other file."""
     data = path.read_bytes()
     try:
-        return creature_h5.load(data) if data.startswith(HDF5) else json.loads(data)
+        return creature_h5.load(data) if data.startswith(HDF5) else read_json(data)
     except ValueError as error:
         raise ValueError(f"{path} needs a creature, as JSON or HDF5: {error}") from error

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..exports import tables
 from ..exports.run_file import RunFile
-from ..exports.table import Ragged
+from ..exports.tables import Ragged
 from ..optional import require
 
 
@@ -50,6 +50,7 @@ def array(values: Any) -> np.ndarray:
     if isinstance(values, np.ndarray):
         return values
     kinds = {type(value) for value in values}
+    # Whole numbers stay whole; a missing one makes them real, since only those have NaN.
     if kinds <= {float, int, type(None)} and kinds != {int}:
         return np.array([np.nan if value is None else value for value in values], float)
     if kinds == {int}:
@@ -58,9 +59,9 @@ def array(values: Any) -> np.ndarray:
 
 
 def _objects(values: Sequence[Any]) -> np.ndarray:
-    found = np.empty(len(values), object)
-    found[:] = list(values)
-    return found
+    objects = np.empty(len(values), object)
+    objects[:] = list(values)
+    return objects
 
 
 def frame(columns: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> Any:
@@ -74,8 +75,8 @@ def lineage(data: bytes) -> Columns:
 
     Raise `ValueError` if the file holds no archive.
     """
-    found = tables.lineage(RunFile("run", data))
-    return Columns({name: listed(column.values) for name, column in found.items()})
+    columns = tables.lineage(RunFile("run", data))
+    return Columns({name: listed(column.values) for name, column in columns.items()})
 
 
 def listed(values: Any) -> Any:

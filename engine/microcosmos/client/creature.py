@@ -56,7 +56,7 @@ class Creature:
 
     @property
     def measured(self) -> dict[str, Any] | None:
-        """Results of its evaluation: `fitness`, `descriptors`, `measures` …"""
+        """Return results of its evaluation: `fitness`, `descriptors`, `measures` …"""
         return self.file["measured"]
 
     @property
@@ -93,19 +93,20 @@ class Creature:
         return microcosmos.check(self.file)
 
     def share(self, **options: Any) -> Share:
-        """Publish it under a link; `title`, `credit`, `licence`, `days`, `listed`."""
+        """Publish it under a link, with the options of `sharing.publish`."""
         return publish(self._connection, {"creature": self.sha}, **options)
 
     def save(self, path: str | Path, timeout: float = 300.0) -> Path:
         """Write the file that the ending names: `.json`, `.h5`, `.replay`, `.gif` …"""
         path = Path(path)
-        if path.suffix not in ENDINGS:
+        ending = path.suffix.lower()
+        if ending not in ENDINGS:
             known = ", ".join(ENDINGS)
             raise ValueError(f"`path` must end with one of {known}; got {path.name}")
-        if path.suffix == ".json":
+        if ending == ".json":
             data = json.dumps(self.file, indent=1).encode()
         else:
-            data = self._connection.rendering(self._path + ENDINGS[path.suffix], timeout)
+            data = self._connection.rendering(self._path + ENDINGS[ending], timeout)
         write_whole(path, data)
         return path
 

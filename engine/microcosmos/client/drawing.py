@@ -38,10 +38,11 @@ def braille(values: Sequence[float | None], width: int, height: int) -> list[str
 
 
 def _shares(values: Sequence[float | None]) -> list[float | None]:
-    """Return values from 0 for the least to 1 for the largest; none if all are unknown."""
+    """Return values from 0 for the least to 1 for the largest; none without values."""
     known = [value for value in values if value is not None]
     if not known:
         return []
+    # A flat curve has no span to divide by.
     low, span = min(known), (max(known) - min(known)) or 1.0
     return [None if value is None else (value - low) / span for value in values]
 

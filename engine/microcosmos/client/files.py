@@ -1,11 +1,12 @@
 """Download a file: resumed if it breaks off, verified, and only then put in place."""
 
+import fcntl
 import hashlib
 import os
 import re
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import httpx
@@ -19,9 +20,10 @@ from rich.progress import (
     TransferSpeedColumn,
 )
 
-from ..archive.atomic import sync_folder
+from ..archive.atomic import place, sync_folder
 from .connection import Connection
 from .errors import NotMicrocosmos, Refused, ServerError, unreachable
+from .formatting import visible
 
 TRIES = 6
 """Maximum number of successive tries without a new byte."""
@@ -44,10 +46,12 @@ def progress_bar(name: str, quiet: bool = False) -> Iterator[Tell]:
     if quiet or not console.is_terminal:
         yield silent
         return
-    description, rate = TextColumn("{task.description}"), TransferSpeedColumn()
+    # Names may have brackets, which are no markup.
+    description = TextColumn("{task.description}", markup=False)
+    rate = TransferSpeedColumn()
     columns = (description, BarColumn(), DownloadColumn(), rate, TimeRemainingColumn())
     with Progress(*columns, console=console) as progress:
-        task = progress.add_task(name, total=None)
+        task = progress.add_task(visible(name), total=None)
         yield lambda received, total: progress.update(task, completed=received, total=total)
 
 
@@ -57,32 +61,64 @@ def fetch(connection: Connection, path: str, to: Path, tell: Tell = silent) -> P
     A part beside the file has the expected hash in its name: if the server has another file by
     then, the download starts anew. Raise `ServerError` or `OSError`.
     """
-    if not to.parent.is_dir():
-        raise NotADirectoryError(f"{to.name} needs an existing folder; got {to.parent}")
+    whole = place(to)
+    if not whole.parent.is_dir():
+        raise NotADirectoryError(f"{to.name} needs an existing folder; got {whole.parent}")
+    with _alone(whole):
+        _fetch(connection, path, whole, tell)
+    return to
+
+
+@contextmanager
+def _alone(to: Path) -> Iterator[None]:
+    """Wait while another thread or process downloads the same file: both would write one part
+    (test_downloads_of_one_file_at_once_take_turns)."""
+    beside = to.with_name(f".{to.name}.pull")
+    while True:
+        with beside.open("ab") as lock:
+            with suppress(OSError):  # Some file systems have no locks.
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            try:
+                held = os.path.samestat(os.fstat(lock.fileno()), beside.stat())
+            except FileNotFoundError:
+                held = False
+            if not held:  # The one before removed this file: its lock would hold off nobody.
+                continue
+            try:
+                yield
+            finally:
+                beside.unlink(missing_ok=True)
+            return
+
+
+def _fetch(connection: Connection, path: str, to: Path, tell: Tell) -> None:
     sha, tries = digest(to) if to.exists() else None, 0
     while True:
         part = part_of(to)
         before = size(part)
         try:
-            found = _more(connection, path, to, part, sha, tell)
+            completed = _more(connection, path, to, part, sha, tell)
         except httpx.TransportError as error:
+            # A slow line that makes progress is never given up.
             tries = 0 if size(part_of(to)) > before else tries + 1
             if tries >= TRIES:
                 raise unreachable(error, connection.url) from error
             time.sleep(min(8.0, 0.25 * 2**tries))
             continue
-        if found is not None:
-            _place(found, to)
-        return to
+        if completed is not None:
+            _place(completed, to)
+        return
 
 
 def _more(
     connection: Connection, path: str, to: Path, part: Path | None, sha: str | None, tell: Tell
 ) -> Path | None:
     """Return the completed part; None if the file exists already."""
+    # The bytes of a compressed answer could not be resumed at a number.
     headers = {"Accept-Encoding": "identity"}
     headers |= {"If-None-Match": f'"{sha}"'} if sha else {}
     if part:
+        # If the file has changed, `If-Range` brings the whole one (RFC 9110, section 13.1.5).
         headers |= {"Range": f"bytes={size(part)}-", "If-Range": f'"{_named(part)}"'}
     try:
         with connection.stream(path, headers=headers) as answer:
@@ -111,9 +147,12 @@ def _written(answer: httpx.Response, to: Path, part: Path | None, tell: Tell, ur
             tell(received, total)
             for chunk in answer.iter_raw(CHUNK):
                 file.write(chunk)
+                # A killed process leaves all that has arrived
+                # (test_an_abandoned_download_is_continued_later).
                 file.flush()
                 received += len(chunk)
                 tell(received, max(received, total))
+            # Before the file gets its name: a power cut must not leave half a file under it.
             os.fsync(file.fileno())
     except OSError as error:  # The error of a full disk has no name.
         error.filename = error.filename or str(target)
@@ -137,8 +176,8 @@ def _place(part: Path, to: Path) -> None:
 def part_of(to: Path) -> Path | None:
     """Return the part that an earlier attempt has left."""
     beside = re.compile(rf"\.{re.escape(to.name)}\.[0-9a-f]{{64}}\.part")
-    found = (path for path in to.parent.iterdir() if beside.fullmatch(path.name))
-    return next(found, None)
+    parts = (path for path in to.parent.iterdir() if beside.fullmatch(path.name))
+    return next(parts, None)
 
 
 def size(path: Path | None) -> int:

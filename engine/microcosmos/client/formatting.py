@@ -1,17 +1,13 @@
 """Numbers, durations and states of runs as text."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-MEASURES = {"qd_score": "QD score", "coverage": "coverage", "best": "best"}
-"""Titles of the measures of an archive's quality."""
-CORRECTED = {
-    "corrected_qd_score": "corrected QD score",
-    "corrected_coverage": "corrected coverage",
-    "hit_rate": "hit rate",
-}
-"""Titles of those after reevaluation, which not every run has."""
-SHARES = ("coverage", "corrected_coverage", "hit_rate")
+from ..archive.curves import CORRECTED, SHARES, curve_title
+
+MEASURES = {name: curve_title(name) for name in ("qd_score", "coverage")} | {"best": "best"}
+"""Titles of the measures of an archive's quality, for lines of a terminal."""
 UNITS = ((86400, "d", 3600, "h"), (3600, "h", 60, "min"), (60, "min", 1, "s"))
 COLOURS = {
     "finished": "green",
@@ -20,6 +16,23 @@ COLOURS = {
     "cancelled": "yellow",
     "paused": "yellow",
 }
+HIDDEN = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+"""Characters that steer a terminal, turn the direction of text, or cannot be written."""
+
+
+def visible(text: str) -> str:
+    """Return a text with hidden characters as escapes, which are those of JSON.
+
+    Other people write names and reasons: nothing in them may act on a reader's terminal.
+    """
+    return HIDDEN.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def visible_lines(text: str) -> str:
+    """Return a text of several lines with other hidden characters as escapes."""
+    return "\n".join(map(visible, text.split("\n")))
 
 
 def duration(seconds: float | None) -> str:
@@ -42,7 +55,7 @@ def figure(name: str, value: float | None) -> str:
 def corrected_titles(records: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """Return the titles of measures after reevaluation, if any of the records has them."""
     known = any(record.get(name) is not None for record in records for name in CORRECTED)
-    return CORRECTED if known else {}
+    return {name: curve_title(name) for name in CORRECTED} if known else {}
 
 
 def figures(record: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -52,32 +65,33 @@ def figures(record: Mapping[str, Any]) -> list[tuple[str, str]]:
         return [(title, figure(name, record[name])) for name, title in titles.items()]
     summary = record.get("summary") or {}
     numbers = ((name, value) for name, value in summary.items() if type(value) in (int, float))
-    return [(name.replace("_", " "), f"{value:.4g}") for name, value in list(numbers)[:4]]
+    shown = list(numbers)[:4]
+    return [(visible(name).replace("_", " "), f"{value:.4g}") for name, value in shown]
 
 
 def title(record: Mapping[str, Any]) -> str:
     """Return experiment, name and short id."""
-    return f"{record['experiment']}{quoted(record)}  {record['id'][:8]}"
+    return visible(f"{record['experiment']}{quoted(record)}  {record['id'][:8]}")
 
 
 def quoted(record: Mapping[str, Any]) -> str:
-    return f" “{record['name']}”" if record.get("name") else ""
+    return visible(f" “{record['name']}”") if record.get("name") else ""
 
 
 def status_of(record: Mapping[str, Any]) -> str:
     """Return the status, and the requested one."""
     requested = record.get("requested_state")
-    return record["status"] + (f", to be {requested}" if requested else "")
+    return visible(record["status"] + (f", to be {requested}" if requested else ""))
 
 
 def status_and_reason(record: Mapping[str, Any]) -> str:
     reason = record.get("waiting_reason") or record.get("error")
-    return status_of(record) + (f": {reason}" if reason else "")
+    return status_of(record) + (visible(f": {reason}") if reason else "")
 
 
 def counts_as_text(counts: Mapping[str, int]) -> str:
     """Format the number of runs by status."""
-    return ", ".join(f"{count} {status}" for status, count in counts.items() if count)
+    return visible(", ".join(f"{count} {status}" for status, count in counts.items() if count))
 
 
 def done(record: Mapping[str, Any]) -> str:

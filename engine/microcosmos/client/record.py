@@ -5,7 +5,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 from uuid import UUID
 
 from .connection import Connection
-from .errors import NotFound, Refused, record
+from .errors import Kinds, NotFound, Refused, record
 
 T = TypeVar("T")
 
@@ -25,12 +25,13 @@ class Record:
 
     NOUN: ClassVar[str]
     """Name of the kind in the API."""
+    KINDS: ClassVar[Kinds]
     id = Field[str]()
     name = Field[str | None]()
 
     def __init__(self, connection: Connection, document: Mapping[str, Any]):
         self._connection = connection
-        self.record: dict[str, Any] = record(document, connection.url)
+        self.record: dict[str, Any] = self._checked(document)
         """All fields that the server has."""
 
     def __eq__(self, other: object) -> bool:
@@ -40,7 +41,7 @@ class Record:
         return hash(self.id)
 
     def refresh(self) -> Self:
-        self.record = record(self._connection.read(self._path), self._connection.url)
+        self.record = self._checked(self._connection.read(self._path))
         return self
 
     def pause(self) -> Self:
@@ -50,7 +51,12 @@ class Record:
         return self._ask("resume")
 
     def cancel(self) -> Self:
+        """End it now, with what it has found; `uncancel` takes that back."""
         return self._ask("cancel")
+
+    def uncancel(self) -> Self:
+        """Take its cancellation back: it goes on from its last checkpoint."""
+        return self._ask("uncancel")
 
     def restore(self) -> Self:
         """Bring it back from the bin."""
@@ -61,8 +67,12 @@ class Record:
         return f"{self.NOUN}/{self.id}"
 
     def _ask(self, action: str, document: Any = None) -> Self:
-        self.record = self._connection.send("POST", f"{self._path}/{action}", document)
+        made = self._connection.send("POST", f"{self._path}/{action}", document)
+        self.record = self._checked(made)
         return self
+
+    def _checked(self, document: Mapping[str, Any]) -> dict[str, Any]:
+        return record(document, self._connection.url, self.KINDS)
 
 
 def find(
@@ -76,18 +86,24 @@ def find(
 
     Raise `NotFound`, and `Refused` for several.
     """
+    if not isinstance(id, str):
+        raise Refused(f"An id, or the beginning of one, is needed as a text; got {id!r}.")
     id = id.strip().lower()
+    # A whole id needs no list, which may have many pages.
     if fetch and (whole := _whole(id)):
         return connection.read(f"{noun}/{whole}")
     if not id or set(id) - set("0123456789abcdef-"):
         raise Refused(f"An id, or the beginning of one, is needed; got {id!r}.")
-    found = [one for one in candidates if one["id"].startswith(id)]
-    if not found:
+    known = (record(one, connection.url, {"id": (str,)}) for one in candidates)
+    matching = [one for one in known if one["id"].startswith(id)]
+    if not matching:
         raise NotFound(f"No {noun[:-1]} at {connection.url} has an id that begins with {id}.")
-    if len(found) > 1:
-        among = ", ".join(sorted(one["id"] for one in found[:8]))
-        raise Refused(f"{id} is the beginning of {len(found)} ids: {among}. Write more of it.")
-    return found[0]
+    if len(matching) > 1:
+        among = ", ".join(sorted(one["id"] for one in matching[:8]))
+        raise Refused(
+            f"{id} is the beginning of {len(matching)} ids: {among}. Write more of it."
+        )
+    return matching[0]
 
 
 def _whole(text: str) -> str | None:

@@ -1,24 +1,20 @@
 """Replays and pictures for notebooks, which need no network and stay when saved."""
 
 import json
+import re
 from base64 import b64encode
 from functools import cached_property
+from gzip import compress
 from html import escape
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..archive.atomic import write_whole
-from ..viz import replay_file
+from ..viz import motion, replay_file
+from ..widgets import assets
 
-PLAYER = Path(__file__).with_name("player.html")
-LIMIT = 1_200_000
-"""Largest number of embedded bytes: notebooks are mailed and kept in version control."""
-FLUID = 96
-"""Largest number of cells of the fluid along its longer side."""
 WIDTH = 480
-CONTROLS = 76
+CONTROLS = 96
 """Pixels below the picture."""
 
 
@@ -62,7 +58,7 @@ class Replay:
         return {"text/plain": repr(self), "text/html": self._repr_html_()}
 
     def _repr_html_(self) -> str:
-        """An iframe keeps it apart from the notebook's scripts and styles."""
+        """Return an iframe with the page, apart from the notebook's scripts and styles."""
         width, height = self.motion.size
         shown = round(WIDTH * height / width) + CONTROLS
         return (
@@ -72,60 +68,40 @@ class Replay:
 
     @cached_property
     def html(self) -> str:
-        """Return the whole page; it loads nothing."""
-        frames, cells = thinning(self.motion)
-        page = PLAYER.read_text("utf-8")
-        positions = self.motion.positions[::frames].astype("<f4")
-        levels = coarse(self.motion.levels[::frames], cells)
-        header = {
-            "frames": len(positions),
-            "nodes": positions.shape[1],
-            "every": self.header["every"] * frames,
-            "edges": self.header["edges"],
-            "size": self.header["size"],
-            "grid": levels.shape[1:],
-            "strongest": self.motion.strongest / self.motion.quantum,
-            "note": note(self.motion, frames, levels.shape[1:]),
-        }
+        """Return the whole page, which loads nothing.
+
+        It is the page that the browser saves of a creature, with a recorded motion alone. Raise
+        `FileNotFoundError` in a checkout where `make web` has not built it.
+        """
+        about = {"title": repr(self)[1:-1], "creature": None, "note": note(self.motion)}
+        # Without the time in its header, the same motion is the same page.
+        packed = b64encode(compress(motion.encode(self.motion), mtime=0)).decode()
         # A script must not contain its own end tag.
-        page = page.replace("@HEADER@", json.dumps(header).replace("<", "\\u003c"))
-        page = page.replace("@POSITIONS@", b64encode(positions.tobytes()).decode())
-        return page.replace("@LEVELS@", b64encode(levels.tobytes()).decode())
+        texts = {"about": json.dumps(about).replace("<", "\\u003c"), "motion": packed}
+        data = "".join(
+            f'<script type="text/plain" id="{name}">{text}</script>'
+            for name, text in texts.items()
+        )
+        head, body, end = re.split("<!--(?:title|data)-->", assets.page())
+        return "".join((head, escape(about["title"]), body, data, end))
 
     def save(self, path: str | Path) -> Path:
         """Write `.html`, a page that plays by itself, or the replay file."""
         path = Path(path)
-        write_whole(path, self.html.encode() if path.suffix == ".html" else self.data)
+        write_whole(path, self.html.encode() if path.suffix.lower() == ".html" else self.data)
         return path
 
 
-def thinning(motion: replay_file.Replay) -> tuple[int, int]:
-    """Return strides of frames and of cells that keep the page small."""
-    width, height = motion.size
-    cells = -(-max(width, height) // FLUID)
-    frame = 8 * motion.positions.shape[1] + (width // cells) * (height // cells)
-    most = max(2, LIMIT // frame)
-    return -(-motion.frames // most), cells
-
-
-def coarse(levels: np.ndarray, cells: int) -> np.ndarray:
-    """Return (frame, x, y) means over squares of `cells` × `cells`."""
-    if cells == 1:
-        return levels
-    frames, width, height = levels.shape
-    whole = levels[:, : width // cells * cells, : height // cells * cells]
-    squares = whole.reshape(frames, width // cells, cells, height // cells, cells)
-    return np.rint(squares.mean((2, 4), dtype=np.float32)).astype(np.int8)
-
-
-def note(motion: replay_file.Replay, frames: int, grid: tuple[int, ...]) -> str:
-    """Say what was left out."""
+def note(recorded: replay_file.Replay) -> str:
+    """Say what the page leaves out; empty where it has all."""
+    kept, (width, height) = motion.header(recorded), recorded.size
     parts = []
-    if frames > 1:
-        parts.append(f"one frame in {frames}")
-    if grid != motion.size:
-        width, height = motion.size
-        parts.append(f"the fluid in {grid[0]} × {grid[1]} squares of {width} × {height} cells")
+    if (every := motion.stride(recorded)) > 1:
+        parts.append(f"one frame in {every}")
+    if kept["moments"] < kept["frames"]:
+        parts.append(f"the fluid at {kept['moments']} moments")
+    if (side := kept["square"]) > 1:
+        parts.append(f"{width} × {height} cells in squares of {side} × {side}")
     if not parts:
         return ""
     return f"To stay small this shows {' and '.join(parts)}; save() has all."

@@ -1,11 +1,12 @@
 """Specs to submit: an object, a file, a preset by its name, or a shared run by its address."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from . import shared
+from ..invalid import InvalidField
+from ..json_text import read_json
+from . import sharing
 from .connection import Connection
 
 
@@ -16,9 +17,10 @@ def document(connection: Connection, spec: Any) -> dict[str, Any]:
     if hasattr(spec, "model_dump"):
         return spec.model_dump(mode="json")
     if not isinstance(spec, str | Path):
-        raise TypeError(f"`spec` needs a spec, a file or a preset's name; got {spec!r:.80}")
-    if address := shared.address(str(spec)):
-        return shared.spec(address)
+        needed = "must be a spec, a file or a preset's name"
+        raise InvalidField("spec", f"{needed}; got {spec!r:.80}")
+    if address := sharing.address(str(spec)):
+        return sharing.spec(address)
     if Path(spec).is_file():
         return read(Path(spec))
     return preset(connection, str(spec))
@@ -26,13 +28,20 @@ def document(connection: Connection, spec: Any) -> dict[str, Any]:
 
 def read(path: Path) -> dict[str, Any]:
     """Return the spec in a file. Raise `ValueError` if there is none."""
+    return parsed(path.read_bytes(), str(path))
+
+
+def parsed(data: bytes, source: str) -> dict[str, Any]:
+    """Return the spec in bytes from a source. Raise `ValueError` if there is none."""
     try:
-        found = json.loads(path.read_bytes())
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path} needs a spec as JSON; got something else: {error}") from error
-    if not isinstance(found, dict):
-        raise ValueError(f"{path} needs a spec as a JSON object; got {found!r:.80}")
-    return found
+        document = read_json(data)
+    except ValueError as error:
+        raise ValueError(
+            f"{source} needs a spec as JSON; got something else: {error}"
+        ) from error
+    if not isinstance(document, dict):
+        raise ValueError(f"{source} needs a spec as a JSON object; got {document!r:.80}")
+    return document
 
 
 def preset(connection: Connection, name: str) -> dict[str, Any]:
@@ -42,9 +51,9 @@ def preset(connection: Connection, name: str) -> dict[str, Any]:
         for experiment in connection.items("experiments")
         for one in experiment["presets"]
     }
-    found = known.get(name) or known.get(f"quality-diversity/{name}")
-    if found is None:
+    spec = known.get(name) or known.get(f"quality-diversity/{name}")
+    if spec is None:
         raise ValueError(
             f"`spec` needs a file, or one of the presets {', '.join(known)}; got {name}"
         )
-    return found
+    return spec

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any, Self
 
 from .columns import frame
+from .errors import SWEEP
 from .formatting import MEASURES, corrected_titles, counts_as_text
 from .polling import ENDED, follow_sweep
 from .record import Field, Record
@@ -14,7 +15,7 @@ from .views import watch
 class Sweep(Record):
     """A copy of the server's record; `refresh` reads it again."""
 
-    NOUN = "sweeps"
+    NOUN, KINDS = "sweeps", SWEEP
     cases = Field[list[dict[str, Any]]]()
     """Each with its `values`, by the paths of fields, and the ids of its `runs`."""
     total = Field[int]()
@@ -31,8 +32,8 @@ class Sweep(Record):
         return all(status in ENDED for status, count in self.status_counts.items() if count)
 
     def runs(self) -> Iterator[Run]:
-        found = self._connection.items("runs", sweep=self.id, limit=200, sort="created")
-        return (Run(self._connection, one) for one in found)
+        records = self._connection.items("runs", sweep=self.id, limit=200, sort="created")
+        return (Run(self._connection, one) for one in records)
 
     def watch(self) -> dict[str, int]:
         """Show its runs until all have ended; Ctrl-C ends only the watching."""
@@ -46,8 +47,13 @@ class Sweep(Record):
 
     def change(self, *, name: str | None) -> Self:
         """Change its name."""
-        self.record = self._connection.send("PATCH", self._path, {"name": name})
+        self.record = self._checked(self._connection.send("PATCH", self._path, {"name": name}))
         return self
+
+    def uncancel(self) -> Self:
+        """Take the cancellation of all its cancelled runs back."""
+        runs = [run.id for run in self.runs() if run.status == "cancelled"]
+        return self._ask("uncancel", {"runs": runs})
 
     def summary(self) -> "Summary":
         """Return median and spread of the runs of each case, by generation."""

@@ -1,10 +1,13 @@
-"""The devices of a run over many hosts: those of this process, and all helpers."""
+"""The devices of a run over many hosts: those of this process, and helpers by a scheduler."""
 
+import logging
+import threading
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -14,9 +17,143 @@ import jax
 from .. import search
 from ..experiments import Experiment
 from ..experiments.evolution import Evolution
-from .block import Answer, Work, timed
-from .connection import Connection
-from .dispatch import Device, Dispatcher
+from ..optional import require
+from .dispatch import Answer, Device, Dispatcher, Pending, Work, compute, refusal, timed
+from .scheduler import PACKAGE, security
+
+POLL_SECONDS = 0.5
+"""Time between two checks for helpers that have joined or left."""
+CONNECT_SECONDS = 10.0
+"""Longest time for an answer of the scheduler."""
+RETRY_SECONDS = 2.0
+"""Time before a scheduler that did not answer is called again."""
+
+log = logging.getLogger(__name__)
+
+
+class Asked:
+    """A task of a helper; a `dispatch.Pending` that never waits for a lost connection."""
+
+    def __init__(self, future: Any):
+        self._future = future
+
+    def add_done_callback(self, fn: Callable[[Any], object]) -> None:
+        self._future.add_done_callback(lambda _: fn(self))
+
+    def result(self) -> Any:
+        # Dask would ask its loop, which a client that closes may have stopped.
+        if self._future.cancelled():
+            raise CancelledError("the connection is lost, or the helper has left")
+        return self._future.result()
+
+    def cancel(self) -> None:
+        # `Future.cancel` would ask the loop too. Dask cancels what nobody waits for.
+        self._future.release()
+
+
+class Helper:
+    """A process elsewhere that computes blocks; a `dispatch.Device`."""
+
+    capacity = 2
+
+    def __init__(self, client: Any, address: str, name: str, run: str):
+        self.address, self.name = address, name
+        self.fits = False
+        """True once it has said that it can compute the run, until it fails at a block."""
+        self._client, self._run, self._numbers = client, run, count()
+
+    def ask(self, function: Any, *arguments: Any) -> Pending:
+        # Keys have to differ, or Dask would return an earlier result.
+        key = f"{function.__name__}-{self._run}-{self.name}-{next(self._numbers)}"
+        return Asked(
+            self._client.submit(
+                function, *arguments, key=key, workers=[self.address], pure=False
+            )
+        )
+
+    def is_there(self) -> bool:
+        """Return whether it fits, and a scheduler would bring it a block."""
+        return self.fits and self._client.status == "running"
+
+    def submit(self, work: Work) -> Pending:
+        return self.ask(compute, work)
+
+    def fail(self, error: BaseException) -> None:
+        self.fits = False
+        text = "%s computes no more blocks of this run: %s: %s"
+        log.warning(text, self.name, type(error).__name__, error)
+
+
+class Connection:
+    """Keeps a connection with a scheduler, and asks each helper whether it fits the run."""
+
+    def __init__(self, url: str, certificate: Path | None, spec: str, device: str, run: str):
+        """Raise `ValueError` for an address that may not be used."""
+        self._security = security(url, certificate)
+        self._url, self._spec, self._device, self._run = url, spec, device, run
+        self._asked: dict[str, Helper] = {}
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._keep, daemon=True, name="cluster")
+        self._thread.start()
+
+    def helpers(self) -> Sequence[Helper]:
+        """Return the helpers that compute for the run now."""
+        return [one for one in list(self._asked.values()) if one.is_there()]
+
+    def close(self) -> None:
+        self._ended.set()
+        self._thread.join(2 * CONNECT_SECONDS)
+
+    def _keep(self) -> None:
+        distributed, away = require("distributed", PACKAGE), False
+        while not self._ended.is_set():
+            try:
+                with distributed.Client(
+                    self._url,
+                    security=self._security,
+                    timeout=CONNECT_SECONDS,
+                    set_as_default=False,
+                    name=f"microcosmos {self._run}",
+                ) as client:
+                    log.info("Connected with the scheduler at %s", self._url)
+                    away = False
+                    self._watch(client)
+            except Exception as error:  # Dask may raise anything; the run goes on.
+                if not away:  # Once, however long it lasts.
+                    text = "The scheduler at %s does not answer; it is called again: %s"
+                    log.warning(text, self._url, error)
+                away = True
+            self._asked = {}
+            self._ended.wait(RETRY_SECONDS)
+
+    def _watch(self, client: Any) -> None:
+        """List helpers until the run ends or the connection is lost."""
+        while client.status == "running" and not self._ended.wait(POLL_SECONDS):
+            # `scheduler_info` is for a moment empty whenever a worker leaves.
+            workers = client.sync(client.scheduler.identity, n_workers=-1)["workers"]
+            for address, worker in workers.items():
+                if address not in self._asked:
+                    self._ask(client, Helper(client, address, str(worker["id"]), self._run))
+            for address in [one for one in self._asked if one not in workers]:
+                log.info("%s has left", self._asked.pop(address).name)
+
+    def _ask(self, client: Any, helper: Helper) -> None:
+        """Ask a helper whether it fits; until it answers it gets nothing."""
+        self._asked[helper.address] = helper
+        pending = helper.ask(refusal, self._spec, self._device)
+
+        def answered(pending: Any) -> None:
+            try:
+                problem = pending.result()
+            except BaseException as error:  # It has left, or the connection is lost.
+                problem = f"{type(error).__name__}: {error}"
+            if problem:
+                log.warning("%s gets no blocks of this run: %s", helper.name, problem)
+            else:
+                log.info("%s computes for this run", helper.name)
+            helper.fits = not problem
+
+        pending.add_done_callback(answered)
 
 
 class OwnDevice:
@@ -44,7 +181,7 @@ class ClusterDevices:
     """This process's devices and all helpers of a cluster; `search.Devices`.
 
     Without helpers, or while the scheduler is away, a run goes on here. Device seconds are sums
-    of what the blocks took.
+    of the blocks' times.
     """
 
     def __init__(
@@ -52,7 +189,7 @@ class ClusterDevices:
     ):
         programs = experiment.block_programs()
         self._names = {id(program): name for name, program in programs.items()}
-        self._spec = experiment.plan.spec
+        self._spec = experiment.facts.spec
         self._own = [OwnDevice(one, programs) for one in jax.local_devices()] if own else []
         self._connection = Connection(
             url, certificate, self._spec, experiment.device, uuid4().hex[:8]
@@ -77,15 +214,15 @@ class ClusterDevices:
         return self._dispatcher.seconds
 
     def summary(self) -> dict[str, float]:
-        """Return the number of devices, and device seconds that counted over those there were.
+        """Return the number of devices, and the efficiency: device seconds used over available.
 
-        What there were includes the time in which offspring are made and inserted.
+        The time in which offspring are made and inserted counts as available.
         """
         self._listed()
-        used, there = self._dispatcher.seconds - self._before, self._available
+        used, available = self._dispatcher.seconds - self._before, self._available
         self._before, self._available = self._dispatcher.seconds, 0.0
-        efficiency = {"cluster: efficiency": used / there} if there else {}
-        return {"cluster: devices": self._count} | efficiency
+        efficiency = {"cluster.efficiency": used / available} if available else {}
+        return {"cluster.devices": self._count} | efficiency
 
     def close(self) -> None:
         self._connection.close()
@@ -95,9 +232,9 @@ class ClusterDevices:
     def _listed(self) -> list[Device]:
         now = time.monotonic()
         self._available += self._count * (now - self._since)
-        found: list[Device] = [*self._own, *self._connection.helpers()]
-        self._since, self._count = now, len(found)
-        return found
+        devices: list[Device] = [*self._own, *self._connection.helpers()]
+        self._since, self._count = now, len(devices)
+        return devices
 
 
 @contextmanager

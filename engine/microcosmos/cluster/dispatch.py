@@ -1,10 +1,12 @@
-"""Dispatch: which device computes which block, whatever joins, leaves or hangs meanwhile."""
+"""Blocks, their computation, and their dispatch to devices, which may join, leave or hang."""
 
+import json
 import logging
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from queue import Empty, SimpleQueue
 from statistics import median
 from typing import Any, Protocol
@@ -12,15 +14,73 @@ from typing import Any, Protocol
 import jax
 import numpy as np
 
+from ..build import build
+from ..experiments.evolution import Evolution
 from ..search import Stopped
-from .block import Answer, Work
+from ..spec import parse
+
+RUNS = 4
+"""Runs whose programs a helper keeps."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """One block to compute."""
+
+    spec: str
+    """The whole spec of the run as JSON."""
+    program: str
+    """A name of `Evolution.block_programs`."""
+    items: Any
+    """Arrays whose first axis is the block."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The results of a block."""
+
+    found: Any
+    """Results of the program, in NumPy arrays."""
+    seconds: float
+    """Time that the device took."""
+
+
+@lru_cache(maxsize=RUNS)
+def experiment_of(spec: str) -> Evolution:
+    """Build the run of a spec, from which a helper takes the programs of blocks."""
+    experiment = build(parse(json.loads(spec)))
+    assert isinstance(experiment, Evolution)
+    return experiment
+
+
+def refusal(spec: str, device: str) -> str | None:
+    """Return the reason why this process cannot compute the blocks of a run; None if it can."""
+    try:
+        own = experiment_of(spec).device
+    except Exception as error:  # Such as a missing plug-in: whatever it is, others may compute.
+        return f"{type(error).__name__}: {error}"
+    return None if own == device else f"its device is {own!r}, the run's {device!r}"
+
+
+def compute(work: Work) -> Answer:
+    """Compute a block on the first device of this process."""
+    program = experiment_of(work.spec).block_programs()[work.program]
+    return timed(program, work.items, jax.local_devices()[0])
+
+
+def timed(program: Any, items: Any, device: Any) -> Answer:
+    """Compute a block on a device; return its results and time."""
+    began = time.monotonic()
+    results = jax.device_get(program(jax.device_put(items, device)))
+    return Answer(results, time.monotonic() - began)
+
 
 LATE = 3.0
 """A block that takes this many times the median is sent to a second device."""
 CHECK_SECONDS = 0.2
-"""Longest time before the dispatcher notices who joined, left or is late."""
+"""Longest time before the dispatcher notices devices that joined, left or are late."""
 NOBODY_SECONDS = 30.0
-"""Time between two messages that nobody computes."""
+"""Time between two warnings that no device computes."""
 
 log = logging.getLogger(__name__)
 
@@ -96,7 +156,7 @@ class Dispatcher:
         """
         first, self._next = self._next, self._next + len(works)
         wanted = {first + i: work for i, work in enumerate(works)}
-        unsent, told = deque(wanted), time.monotonic()
+        unsent, warned = deque(wanted), time.monotonic()
         try:
             while any(number not in self._answers for number in wanted):
                 if stop():
@@ -104,9 +164,9 @@ class Dispatcher:
                 devices = self.listed()
                 self._lose(devices, unsent)
                 self._assign(devices, wanted, unsent)
-                if not devices and time.monotonic() - told > NOBODY_SECONDS:
+                if not devices and time.monotonic() - warned > NOBODY_SECONDS:
                     log.warning("No helper computes for this run; it waits for one")
-                    told = time.monotonic()
+                    warned = time.monotonic()
                 self._receive(unsent)
             return [self._answers[number][1].found for number in wanted]
         finally:
@@ -124,7 +184,7 @@ class Dispatcher:
             sending.pending.cancel()
         number = sending.number
         if number not in self._answers and not self._under_way(number):
-            unsent.appendleft(number)
+            unsent.appendleft(number)  # It has waited longest.
 
     def _under_way(self, number: int) -> list[Sending]:
         return [one for one in self._sent if one.number == number]
@@ -133,7 +193,7 @@ class Dispatcher:
         self, devices: Sequence[Device], wanted: dict[int, Work], unsent: deque[int]
     ) -> None:
         loads = [sum(one.device is device for one in self._sent) for device in devices]
-        # First a block for everybody, then a spare.
+        # First a block for each device, then a spare.
         for level in range(max((device.capacity for device in devices), default=0)):
             for at, device in enumerate(devices):
                 if loads[at] != level or level >= device.capacity:
@@ -160,7 +220,6 @@ class Dispatcher:
         if not sending.is_first:
             log.info("A block is late; %s computes it too", device.name)
         self._sent.append(sending)
-        sending.pending = device.submit(work)
 
         def arrived(pending: Pending) -> None:
             # Answers are fetched here, beside one another.
@@ -169,7 +228,11 @@ class Dispatcher:
             except BaseException as error:  # Also a cancelled one.
                 self._arrivals.put((sending, None, error))
 
-        sending.pending.add_done_callback(arrived)
+        try:
+            sending.pending = device.submit(work)
+            sending.pending.add_done_callback(arrived)
+        except Exception as error:  # Its connection is lost: as if the block had failed there.
+            self._arrivals.put((sending, None, error))
 
     def _receive(self, unsent: deque[int]) -> None:
         """Wait for an answer, then take all that are there."""
@@ -191,7 +254,7 @@ class Dispatcher:
             return
         self._sent.remove(sending)
         number, name = sending.number, sending.device.name
-        if number in self._answers:
+        if number in self._answers:  # The second answer to a late block checks the first.
             other, before = self._answers[number]
             if not _same(before.found, answer.found):
                 raise Disagreement(

@@ -16,8 +16,7 @@ from pathlib import Path
 from .. import plugins
 from ..device import prepare
 from ..doctor import self_test
-from .scheduler import HTTP, configured, end_with_signal
-from .security import security
+from .scheduler import HTTP, configured, end_with_signal, security
 
 RETRY_SECONDS = 2.0
 PATIENCE = "30s"
@@ -28,17 +27,21 @@ log = logging.getLogger("microcosmos.cluster.helper")  # Its own name is `__main
 
 def main() -> None:
     """Join until a signal; end with a sentence and status 1 if the device computes wrongly."""
-    asked = _arguments()
+    arguments = _arguments()
     logging.basicConfig(format="%(asctime)s %(message)s")
     logging.getLogger("microcosmos").setLevel(logging.INFO)
     threading.Thread(target=_end_with_input, daemon=True).start()
-    for failed in plugins.load_all(asked.module):
+    for failed in plugins.load_all(arguments.module):
         log.warning("%s is not loaded: %s", failed.module, failed.reason)
-    prepare(devices=1, cache=asked.cache)
-    if wrong := self_test.fault_here():
-        sys.exit(f"{asked.name} does not join: {wrong}")
-    while not asyncio.run(_join(asked.url, asked.name, asked.certificate)):
-        log.warning("%s joins again in %.0f s", asked.name, RETRY_SECONDS)
+    try:
+        prepare(devices=1, cache=arguments.cache)
+        wrong = self_test.fault_here()
+    except ValueError as error:  # A variable of this host is wrong.
+        wrong = str(error)
+    if wrong:
+        sys.exit(f"{arguments.name} does not join: {wrong}")
+    while not asyncio.run(_join(arguments.url, arguments.name, arguments.certificate)):
+        log.warning("%s joins again in %.0f s", arguments.name, RETRY_SECONDS)
         threading.Event().wait(RETRY_SECONDS)
 
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..device import cores
-from ..doctor.devices import PATIENCE, probed
+from ..doctor.machine import PATIENCE, probed
 
 POLL_SECONDS = 0.2
 LIVED_SECONDS = 60.0
-"""A helper that lived shorter has failed to start."""
+"""A helper that ends sooner counts as failed to start."""
 ATTEMPTS = 5
-"""Failures to start, one after another, after which a helper stays away."""
+"""Consecutive failures to start after which a helper is given up."""
 
 log = logging.getLogger(__name__)
 
@@ -33,10 +33,12 @@ class Process:
     core: int | None
     failures: int = 0
     started: float = 0.0
+    due: float | None = None
+    """Time at which it starts again, once it has died."""
     running: subprocess.Popen | None = field(default=None, repr=False)
 
     def start(self) -> None:
-        self.started = time.monotonic()
+        self.started, self.due = time.monotonic(), None
         self.running = subprocess.Popen(
             self.command, stdin=subprocess.PIPE, env=os.environ | self.environment
         )
@@ -44,18 +46,25 @@ class Process:
             os.sched_setaffinity(self.running.pid, {self.core})
 
     def has_given_up(self) -> bool:
-        """Start the process again if it has died; return whether there is no hope."""
+        """Start the process again a while after it died; return True after too many failures.
+
+        It never waits: the caller looks for signals.
+        """
         if self.running is None or self.running.poll() is None:
             return self.running is None
-        short = time.monotonic() - self.started < LIVED_SECONDS
-        self.failures = self.failures + 1 if short else 0
-        if self.failures >= ATTEMPTS:
-            log.error("%s does not start: it stays away", self.name)
-            self.running = None
-            return True
-        time.sleep(min(2.0**self.failures, 30.0))
-        log.warning("%s has ended with %s: it starts again", self.name, self.running.returncode)
-        self.start()
+        now = time.monotonic()
+        if self.due is None:
+            self.failures = self.failures + 1 if now - self.started < LIVED_SECONDS else 0
+            if self.failures >= ATTEMPTS:
+                log.error("%s does not start: it stays away", self.name)
+                self.running = None
+                return True
+            pause = 2.0**self.failures
+            text = "%s has ended with %s: it starts again in %.0f s"
+            log.warning(text, self.name, self.running.returncode, pause)
+            self.due = now + pause
+        elif now >= self.due:
+            self.start()
         return False
 
 
@@ -63,7 +72,7 @@ def join(url: str, options: Sequence[str], cache: Path, processes: int | None = 
     """Run one helper a device until a signal; return False if none could go on.
 
     `options` are those of `helper`. A GPU is a device, and without any each core is. Raises
-    `RuntimeError` if JAX fails.
+    `RuntimeError` if JAX fails, and `ValueError` for more processes than GPUs.
     """
     started = [
         Process(
@@ -95,19 +104,24 @@ def _devices(
 ) -> Iterator[tuple[str, dict[str, str], int | None]]:
     """Yield a name, an environment and a core for each helper."""
     cache.mkdir(parents=True, exist_ok=True)
-    found = probed(cache, PATIENCE)["devices"]
-    on_gpu = found[0]["platform"] != "cpu"
-    host, here = platform.node(), os.getpid()
+    # In a process of its own, which ends: JAX keeps a GPU's memory as long as it runs.
+    devices = probed(cache, PATIENCE)["devices"]
+    on_gpu = devices[0]["platform"] != "cpu"
+    host, process = platform.node(), os.getpid()
     if not on_gpu:
         usable = sorted(getattr(os, "sched_getaffinity", lambda _: range(cores()))(0))
         for number in range(processes or len(usable)):
-            name = f"{host} core {number} ({here})"
+            name = f"{host} core {number} ({process})"
             yield name, {}, usable[number % len(usable)]
         return
     given = os.environ.get("CUDA_VISIBLE_DEVICES")
-    visible = given.split(",") if given else [str(one["id"]) for one in found]
+    visible = given.split(",") if given else [str(one["id"]) for one in devices]
+    if processes and processes > len(visible):
+        raise ValueError(
+            f"--processes must be at most {len(visible)}, the number of GPUs; got {processes}"
+        )
     for number in visible[: processes or len(visible)]:
-        yield f"{host} GPU {number} ({here})", {"CUDA_VISIBLE_DEVICES": number}, None
+        yield f"{host} GPU {number} ({process})", {"CUDA_VISIBLE_DEVICES": number}, None
 
 
 def _end(running: Sequence[subprocess.Popen], patience: float = 10.0) -> None:

@@ -16,10 +16,12 @@ from .delta import (
 )
 from .forcing import (
     Forced,
+    at_nodes,
+    at_points,
     force_free,
     multi_direct_forcing,
+    points,
     step_lengths,
     torque_free,
     unprojected,
 )
-from .layers import at_nodes, at_points, points

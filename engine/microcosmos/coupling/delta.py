@@ -75,7 +75,10 @@ class Windows(eqx.Module):
 
 
 def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) -> Windows:
-    """Return the cells that points act on in a periodic box of `size` cells."""
+    """Return the cells of a periodic box of `size` cells on which points act, with weights.
+
+    `positions` are unwrapped, in cells.
+    """
     points = len(positions)
     if points <= CHUNK:
         cells, weights = _around(positions, size, kernel)
@@ -85,6 +88,7 @@ def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) 
     cells, weights = jax.lax.map(
         lambda part: _around(part, size, kernel), filled.reshape(chunks, CHUNK, 2)
     )
+    # The points that fill up the last chunk stand at 0: without weight they act on no cell.
     real = jnp.arange(chunks * CHUNK).reshape(chunks, CHUNK) < points
     return Windows(cells, jnp.where(real[:, :, None, None], weights, 0.0), points)
 
@@ -92,7 +96,7 @@ def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) 
 def interpolate(
     planes: tuple[Plane, ...] | Float[Array, "channel x y"], at: Windows
 ) -> Float[Array, "node channel"]:
-    """Return the values of planes at points (J)."""
+    """Return the values of planes at points (J), (node, channel)."""
     flat = [plane.reshape(-1) for plane in planes]
     if at.density is not None:
         flat = [plane / at.density for plane in flat]
@@ -110,11 +114,15 @@ def interpolate(
 def spread(
     values: Float[Array, "node channel"], at: Windows, size: tuple[int, ...]
 ) -> Float[Array, "channel x y"]:
-    """Return the density in the cells of values at points (S)."""
+    """Return the planes onto which values at points are spread (S), (channel, x, y).
+
+    Each plane has the sum of its values: weights of a point sum to 1.
+    """
     planes = jnp.zeros((values.shape[1], size[0] * size[1]), values.dtype)
 
     def add(planes, chunk):
         values, cells, weights = chunk
+        # `_around` has put every cell into the box, so no index has to be checked.
         amounts = values.T[:, :, None, None] * weights[None]
         return planes.at[:, cells].add(amounts, mode="promise_in_bounds"), None
 
@@ -128,6 +136,8 @@ def spread(
 def divided(at: Windows, plane: Plane) -> Windows:
     """Return windows that interpolate planes divided by `plane`, J (p/ρ)."""
     density = plane.reshape(-1)
+    # The weights of one chunk are divided, once for all planes. Many chunks would need a second
+    # array of weights, so `interpolate` divides the planes instead.
     if len(at.cells) == 1:
         return Windows(at.cells, at.weights / density[at.cells], at.points)
     return Windows(at.cells, at.weights, at.points, density)
@@ -144,9 +154,11 @@ def masked(at: Windows, present: Bool[Array, "node"] | None) -> Windows:
 
 def _around(positions, size, kernel):
     first = kernel.points / 2 - 1
+    # Cells do not move with a point; only its weights have a derivative.
     base = jax.lax.stop_gradient(jnp.floor(positions - first))
     offsets = jnp.arange(kernel.points, dtype=positions.dtype)
     cells = base[:, :, None] + offsets[None, None]
+    # Distances are of unwrapped cells: a window across the border needs no nearest image.
     weights = kernel.weight(positions[:, :, None] - cells)
     x = jnp.mod(cells[:, 0], size[0]).astype(jnp.int32)
     y = jnp.mod(cells[:, 1], size[1]).astype(jnp.int32)

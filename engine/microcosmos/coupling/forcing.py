@@ -1,6 +1,6 @@
-"""Multi-direct forcing: find the force at the nodes that makes the fluid follow the bodies.
+"""Multi-direct forcing: the force at the nodes that makes the fluid follow the bodies.
 
-Multi-direct forcing: Wang, Fan and Luo, Int. J. Multiphase Flow 34, 283 (2008). Each
+The method is that of Wang, Fan and Luo, Int. J. Multiphase Flow 34, 283 (2008). Each
 increment is scaled by β = 1 / (row sum of J S / ρ), which converges for any packing of nodes,
 and by a step length, with which fewer iterations do. A projection removes the mean (and the
 rigid rotation) of each increment, body by body, so that no body pushes itself: displacements
@@ -84,6 +84,7 @@ def multi_direct_forcing(
 
     def improve(q, target, reached, length):
         error = target - velocity - reached
+        # The target loses its rigid motion too: a body goes where the fluid carries it.
         rigid = projection(error, beta, positions, groups)
         return q + length * beta[:, None] * (error - rigid), target - rigid
 
@@ -92,11 +93,13 @@ def multi_direct_forcing(
         reached = interpolate(spread(q, at, rho.shape), by_density)
         return improve(q, target, reached, length), None
 
+    # Nothing is forced yet, so the first iteration has nothing to spread.
     first = improve(jnp.zeros_like(target), target, jnp.zeros_like(target), lengths[0])
     # A loop, though a short one: written out, XLA forms the weights again in every iteration.
     (q, target), _ = jax.lax.scan(iterate, first, lengths[1:])
     if limit is None:
         return Forced(q, target, jnp.ones(groups.count, q.dtype))
+    # The constant keeps the root differentiable where nothing is forced.
     largest = jnp.sqrt(groups.largest(jnp.sum(q * q, 1)) + 1e-24)
     scale = jnp.minimum(1.0, limit / largest)
     return Forced(q * groups.per_node(scale)[:, None], target, scale)
@@ -120,4 +123,31 @@ def step_lengths(iterations: int) -> np.ndarray:
 def _reciprocal(values: Scalars, present: Bool[Array, "node"] | None) -> Scalars:
     if present is None:
         return 1.0 / values
+    # Reverse mode differentiates both branches: an absent node, of value 0, must not divide.
     return jnp.where(present, 1.0 / jnp.where(present, values, 1.0), 0.0)
+
+
+# Two layers thicken a filament of no thickness into a solid (Mittal and Iaccarino, Annu. Rev.
+# Fluid Mech. 37, 239, 2005, as the Microcosmos paper uses it). Both move with the node: layers
+# that turn with the cross-section would stretch, and cancel propulsion.
+OFFSET = 0.5
+"""Distance of a layer from the filament in cells; at 1 the coupling is unstable."""
+
+
+def points(positions: Vectors, normals: Vectors, layers: int) -> Float[Array, "point 2"]:
+    """Return `layers` points for every node, side by side."""
+    if layers == 1:
+        return positions
+    # Both points of a node stand together: `at_nodes` takes their mean without an index.
+    pair = jnp.stack([positions + OFFSET * normals, positions - OFFSET * normals], 1)
+    return pair.reshape(-1, 2)
+
+
+def at_points(values: Vectors, layers: int) -> Float[Array, "point 2"]:
+    """Repeat the value of each node at its points."""
+    return values if layers == 1 else jnp.repeat(values, layers, 0)
+
+
+def at_nodes(values: Float[Array, "point 2"], layers: int) -> Vectors:
+    """Return the mean over the points of each node."""
+    return values if layers == 1 else jnp.mean(values.reshape(-1, layers, 2), 1)

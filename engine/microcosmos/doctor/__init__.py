@@ -1,4 +1,4 @@
-"""Diagnosis: check what Microcosmos needs, and say what to do."""
+"""Diagnosis: checks of the requirements of Microcosmos, with advice."""
 
 from .examination import examine
-from .finding import Finding
+from .machine import Finding

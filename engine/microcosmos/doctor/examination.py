@@ -4,9 +4,7 @@ import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from .devices import devices
-from .finding import Finding, problem
-from .machine import memory, packages, python
+from .machine import Finding, devices, memory, packages, problem, python
 from .server import server
 
 
@@ -24,5 +22,5 @@ def examine(url: str | None, token: str | None, cache: Path) -> Iterator[Finding
         try:
             yield from check()
         except Exception as error:  # A check that fails must not prevent the others.
-            found = f"the check failed: {type(error).__name__}: {error}"
-            yield problem(subject, found, "resolve this, or report it as a bug of doctor")
+            failure = f"the check failed: {type(error).__name__}: {error}"
+            yield problem(subject, failure, "resolve this, or report it as a bug of doctor")

@@ -1,8 +1,10 @@
 """Print JAX's abilities as JSON; a process of its own, since a broken driver may hang it."""
 
+import ctypes
 import json
 import sys
 import tempfile
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +18,19 @@ HIT = "/jax/compilation_cache/cache_hits"
 
 
 def main(cache: Path) -> None:
-    prepare()
-    found = {
+    try:
+        prepare()
+        if kernel_version():
+            ctypes.CDLL(str(import_module("microcosmos_kernels").library()))
+    except (ValueError, OSError) as error:  # A wrong variable, or a library that is damaged.
+        print(json.dumps({"refused": str(error)}))
+        return
+    abilities = {
         "kind": device_kind(),
         "kernel": {"chosen": kernel(), "version": kernel_version()},
         "devices": [_device(one) for one in jax.local_devices()],
     }
-    print(json.dumps(found | {"cache": _cache(cache)}))
+    print(json.dumps(abilities | {"cache": _cache(cache)}))
 
 
 def _device(device: Any) -> dict[str, Any]:
@@ -47,6 +55,7 @@ def _cache(folder: Path) -> dict[str, Any]:
     jax.monitoring.register_event_listener(lambda event, **_: events.append(event))
     with tempfile.TemporaryDirectory(prefix="doctor-", dir=folder) as place:
         jax.config.update("jax_compilation_cache_dir", place)
+        # The second time, the program has to come from the folder.
         for _ in range(2):
             jax.clear_caches()
             jax.block_until_ready(jax.jit(lambda x: jnp.cos(x) + 1)(jnp.arange(7.0)))

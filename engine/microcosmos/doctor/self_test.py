@@ -1,4 +1,4 @@
-"""Self-test: whether the device of this process computes creatures rightly."""
+"""Self-test: check that the device of this process computes creatures correctly."""
 
 import jax
 import numpy as np
@@ -27,13 +27,13 @@ SPEC = {
 
 
 def fault_here() -> str | None:
-    """Return what is wrong with the device of this process, None if nothing is."""
+    """Return the fault of the device of this process; None if it computes correctly."""
     on_cpu = jax.local_devices()[0].platform == "cpu"
     return fault(computed(), exact=bool(device.kernel_version()) and on_cpu)
 
 
 def fault(displacements: list[float], exact: bool) -> str | None:
-    """Return what is wrong with the numbers; None for the right ones."""
+    """Return the fault of the displacements; None if they are as expected."""
     tolerance = 0.0 if exact else TOLERANCE
     whole = len(displacements) == len(EXPECTED)
     if whole and np.allclose(displacements, EXPECTED, rtol=tolerance, atol=0.0):
@@ -42,7 +42,7 @@ def fault(displacements: list[float], exact: bool) -> str | None:
 
 
 def computed() -> list[float]:
-    """Return what the creatures of the test achieve, in order of size."""
+    """Return the displacements of the test's creatures in cells, in order of size."""
     experiment = build(parse(SPEC))
     _, report = experiment.advance(experiment.init())
     return sorted(elite.fitness for elite in report.elites)

@@ -10,7 +10,7 @@ import httpx
 from ..client import Client, NoAnswer, NotAllowed, ServerError
 from ..sizes import size
 from ..version import VERSION
-from .finding import Finding, ok, problem, warning
+from .machine import Finding, ok, problem, warning
 
 MAX_HEARTBEAT_AGE = 20.0
 """Seconds without a heartbeat after which a worker counts as dead."""
@@ -24,11 +24,12 @@ NETWORK_FILE_SYSTEMS = ("nfs", "nfs4", "cifs", "smb3", "fuse.sshfs", "9p")
 
 def server(url: str | None, token: str | None) -> Iterator[Finding]:
     """Check the server; a missing one is a problem only if its address was given."""
-    with Client(url, token, patience=5.0) as client:
+    with Client(url, token, patience=1.0) as client:
         try:
             yield from _version(client)
             yield from _principal(client)
             yield from _health(client)
+            # The whole answer: its header has the clock of the server.
             answer = client.connection.ask("GET", "workers")
             yield from workers(answer.json(), _server_time(answer))
         except NoAnswer as error:
@@ -44,19 +45,20 @@ def server(url: str | None, token: str | None) -> Iterator[Finding]:
 
 def _version(client: Client) -> Iterator[Finding]:
     version = client.connection.read("openapi.json")["info"]["version"]
-    found = f"version {version} answers at {client.url}"
+    text = f"version {version} answers at {client.url}"
     if version == VERSION:
-        yield ok("server", found)
+        yield ok("server", text)
     else:
         advice = "install the same version on both, or creatures may not check bit for bit"
-        yield warning("server", f"{found}; this is {VERSION}", advice)
+        yield warning("server", f"{text}; this is {VERSION}", advice)
 
 
 def _principal(client: Client) -> Iterator[Finding]:
-    found = client.connection.read("tokens/current")
-    until = f", until {found['expires_at']}" if found["expires_at"] else ""
+    principal = client.connection.read("tokens/current")
+    until = f", until {principal['expires_at']}" if principal["expires_at"] else ""
     yield ok(
-        "server", f"you are “{found['name']}” there, with the scope {found['scope']}{until}"
+        "server",
+        f"you are “{principal['name']}” there, with the scope {principal['scope']}{until}",
     )
 
 
@@ -97,22 +99,22 @@ def disk(report: Mapping[str, Any], dialect: str) -> Iterator[Finding]:
     """Check that the store has room, can be written to, and is fast."""
     where, free, seconds = report["location"], report["free_bytes"], report["write_seconds"]
     if free is not None:
-        found = f"{size(free)} free at {where}"
+        text = f"{size(free)} free at {where}"
         if free < MIN_FREE_BYTES:
             advice = "free some space, or choose another folder with MICROCOSMOS_DATA"
-            yield problem("disk", found, advice)
+            yield problem("disk", text, advice)
         elif free < LOW_FREE_BYTES:
-            yield warning("disk", found, "free some space soon: each run keeps an archive file")
+            yield warning("disk", text, "free some space soon: each run keeps an archive file")
         else:
-            yield ok("disk", found)
+            yield ok("disk", text)
     if not report["writable"]:
         advice = f"let the server write to it (chown, chmod {where}), or set MICROCOSMOS_DATA"
         if report["file_system"] == "s3":
             advice = "check AWS_ENDPOINT_URL, the credentials, and that the bucket exists"
         yield problem("disk", f"{where} cannot be written to: {report['error']}", advice)
     elif seconds > MAX_WRITE_SECONDS:
-        found = f"writing to {where} takes {1000 * seconds:.0f} ms"
-        yield warning("disk", found, "checkpoints wait for it; a local disk is faster")
+        text = f"writing to {where} takes {1000 * seconds:.0f} ms"
+        yield warning("disk", text, "checkpoints wait for it; a local disk is faster")
     else:
         yield ok("disk", f"writing to {where} takes {1000 * seconds:.0f} ms")
     if report["file_system"] in NETWORK_FILE_SYSTEMS and dialect == "sqlite":
@@ -133,16 +135,16 @@ def redis(report: Mapping[str, Any]) -> Iterator[Finding]:
         return
     yield ok("Redis", f"{report['version']} answers at {where}")
     if report["policy"] not in (None, "noeviction"):
-        found = f"a full Redis drops messages (maxmemory-policy {report['policy']})"
-        yield warning("Redis", found, "set its maxmemory-policy to noeviction")
+        text = f"a full Redis drops messages (maxmemory-policy {report['policy']})"
+        yield warning("Redis", text, "set its maxmemory-policy to noeviction")
 
 
-def workers(found: list[dict[str, Any]], now: datetime) -> Iterator[Finding]:
+def workers(records: list[dict[str, Any]], now: datetime) -> Iterator[Finding]:
     """Check that there are workers, and that each has reported lately."""
-    if not found:
+    if not records:
         advice = "runs wait: start workers with `make run`, several with WORKERS=n"
         yield warning("workers", "no worker is alive", advice)
-    for one in found:
+    for one in records:
         age = max(0.0, (now - datetime.fromisoformat(one["heartbeat_at"])).total_seconds())
         text = f"{one['name']} on {one['device']}, {one['status']}, reported {age:.0f} s ago"
         if age > MAX_HEARTBEAT_AGE:

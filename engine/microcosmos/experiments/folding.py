@@ -12,9 +12,9 @@ from .. import naming, search
 from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Vector
-from ..search.leaves import filled, leaves
+from ..search.parts.records import identity
+from ..search.state_file import filled, leaves
 from . import table_file
-from .lineage import identity
 from .table_file import Table
 
 
@@ -130,7 +130,7 @@ class Folding:
             infeasible=int(np.count_nonzero(~np.isfinite(state.losses))),
             rows=rows,
             summary={"loss": float(np.mean(state.losses[-1]))}
-            | {f"loss of {name}": value for name, value in now.items()},
+            | {f"loss.{name}": value for name, value in now.items()},
         )
 
 

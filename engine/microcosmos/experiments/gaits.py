@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import naming, search, units
 from ..archive.report import Report, Row
-from .lineage import measurement
+from ..search.parts.records import measurement
 from .table_file import Table
 
 
@@ -37,16 +37,19 @@ def stroke_rows(
     stroke: Stroke, stop: Callable[[], bool], *, block: int, device: str
 ) -> tuple[Row, ...]:
     """Return a row for each viscosity; raises `Stopped` between blocks if asked to."""
-    found = search.evaluate_blocks(stroke.program, stroke.conditions, block=block, stop=stop)
-    points = range(len(found.fitness))
-    return tuple(_row(stroke, point, found, block, device) for point in points)
+    results = search.evaluate_blocks(stroke.program, stroke.conditions, block=block, stop=stop)
+    points = range(len(results.fitness))
+    return tuple(_row(stroke, point, results, block, device) for point in points)
 
 
-def _row(stroke: Stroke, point: int, found: search.Evaluation, block: int, device: str) -> Row:
-    names, values = search.STROKE_MEASURES, found.measures[point].tolist()
+def _row(
+    stroke: Stroke, point: int, results: search.Evaluation, block: int, device: str
+) -> Row:
+    names, values = search.STROKE_MEASURES, results.measures[point].tolist()
     measures: dict[str, float] = dict(zip(names, values, strict=True))
     cycle = measures["cycle_x"], measures["cycle_y"]
-    status = search.STATUSES[int(found.status[point])]
+    status = search.STATUSES[int(results.status[point])]
+    # A simulation that is not finite has no numbers; figures would draw them as results.
     ok = status != "non-finite"
     warnings = units.warnings(
         mach=measures["mach"], limited=measures["limited"], spacing=stroke.spacing

@@ -5,6 +5,7 @@ descriptors, which then stay the same to first order. Trials of several lengths 
 as in a search; the best one in the same cell is the next creature.
 """
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -18,8 +19,8 @@ from ..archive import file
 from ..archive.report import Report, Row
 from ..genomes import Encoding, Genotype, Vector, take
 from ..search.gradients import genes_of, with_genes
+from ..search.parts.records import identity, measurement
 from . import table_file
-from .lineage import identity, measurement
 from .table_file import Table
 
 TRIAL_RATIO = 4.0
@@ -41,6 +42,7 @@ class Trials:
         """Return the gain of the shortest trial over the gain that the slope predicts."""
         if not self.slope:
             return None
+        # Even trials follow the whole slope, odd ones its part that keeps descriptors.
         shortest = 2 * ((len(self.lengths) - 1) // 2)
         predicted = self.lengths[shortest] * self.slope
         ratio = (float(fitness[shortest]) - before) / predicted
@@ -104,20 +106,22 @@ class Refinement:
     ) -> tuple[State, Report]:
         """Measure the creature, or take one step."""
         tried, before = self._trials(state, stop), state.fitness
-        found = search.evaluate_blocks(
+        results = search.evaluate_blocks(
             self.evaluate_block, self._genotypes(tried.genes), block=self.block, stop=stop
         )
         if self.feasible and state.table.rows:  # The creature as it is counts in any case.
-            found = search.judged(found)
-        best = self._best(state, found)
+            results = search.judged(results)
+        best = self._best(state, results)
         if best is None:
             row, length = _unchanged(state), state.length / TRIAL_RATIO
         else:
-            row = self._row(state, found, best, tried.genes[best])
+            row = self._row(state, results, best, tried.genes[best])
             longest = 0 < tried.lengths[best] == tried.lengths[0]
             length = state.length * (2.0 if longest else 1.0)
-            state = replace(state, genes=tried.genes[best], fitness=float(found.fitness[best]))
-        agreement = tried.gain_ratio(before, np.asarray(found.fitness))
+            state = replace(
+                state, genes=tried.genes[best], fitness=float(results.fitness[best])
+            )
+        agreement = tried.gain_ratio(before, np.asarray(results.fitness))
         row = replace(row, values={**row.values, "slope": tried.slope, "agreement": agreement})
         state = replace(state, length=length, table=state.table.grown((row,)))
         return state, self._report(state, row)
@@ -141,7 +145,10 @@ class Refinement:
         if not state.table.rows:
             return None
         row = state.table.rows[-1]
-        return naming.document(self._identity(state.genes), row.measured, row.provenance)
+        found = naming.document(self._identity(state.genes), row.measured, row.provenance)
+        # It descends from the creature that was given, and stays under its terms.
+        given = json.loads(self.spec)["creature"]
+        return found | {name: given[name] for name in ("licence", "credit") if name in given}
 
     def _trials(self, state: State, stop: Callable[[], bool]) -> Trials:
         if not state.table.rows:
@@ -150,16 +157,16 @@ class Refinement:
             self.slopes, self._genotypes(state.genes[None]), block=1, stop=stop
         )
         rows = np.asarray(slopes.rows[0], np.float64) * bool(slopes.finite[0])
-        found = trials_along(state.genes, rows, state.length, self.block)
+        trials = trials_along(state.genes, rows, state.length, self.block)
         if isinstance(self.genotype, Vector):
-            return replace(found, genes=np.clip(found.genes, -1.0, 1.0))
-        return found
+            return replace(trials, genes=np.clip(trials.genes, -1.0, 1.0))
+        return trials
 
-    def _best(self, state: State, found: search.Evaluation) -> int | None:
-        """Return the fittest feasible trial in the creature's cell, if fitter than before."""
-        cells = np.asarray(self.cells.of(jnp.asarray(found.measures)))
+    def _best(self, state: State, results: search.Evaluation) -> int | None:
+        """Return the fittest feasible trial in the creature's cell; None if it is no fitter."""
+        cells = np.asarray(self.cells.of(jnp.asarray(results.measures)))
         home = self._home_cell(state) if state.table.rows else cells[0]
-        fitness = np.where((found.status == 0) & (cells == home), found.fitness, -np.inf)
+        fitness = np.where((results.status == 0) & (cells == home), results.fitness, -np.inf)
         best = int(np.argmax(fitness))
         return best if fitness[best] > state.fitness else None
 
@@ -176,18 +183,20 @@ class Refinement:
     def _identity(self, genes: np.ndarray) -> dict[str, Any]:
         return identity(self.identity_template, take(self._genotypes(genes[None]), 0))
 
-    def _row(self, state: State, found: search.Evaluation, best: int, genes: np.ndarray) -> Row:
+    def _row(
+        self, state: State, results: search.Evaluation, best: int, genes: np.ndarray
+    ) -> Row:
         measures: dict[str, float] = dict(
-            zip(self.measures, found.measures[best].tolist(), strict=True)
+            zip(self.measures, results.measures[best].tolist(), strict=True)
         )
         first = not state.table.rows
         values = {
             "step": state.generation,
-            "fitness": float(found.fitness[best]),
+            "fitness": float(results.fitness[best]),
             **{name: measures[name] for name in self.names},
         }
         measured = measurement(
-            float(found.fitness[best]),
+            float(results.fitness[best]),
             measures,
             self.names,
             block=self.block,
@@ -206,7 +215,7 @@ class Refinement:
         return Row(values, naming.name(whole), naming.canonical(whole), measured, provenance)
 
     def _report(self, state: State, row: Row) -> Report:
-        before = state.table.rows[0].values["fitness"]
+        before: Any = state.table.rows[0].values["fitness"]
         return Report(
             generation=state.generation,
             evaluations=1 + (1 + self.block) * (state.generation - 1),
@@ -242,6 +251,8 @@ def _orthogonal_to(row: np.ndarray, others: np.ndarray) -> np.ndarray:
     if not len(others):
         return row
     _, sizes, basis = np.linalg.svd(others, full_matrices=False)
+    # Slopes of descriptors may depend on each other, and a direction of rounding would be taken
+    # off too.
     basis = basis[sizes > 1e-6 * sizes[0]]
     return row - basis.T @ (basis @ row)
 

@@ -35,9 +35,12 @@ def devices_of(
 
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
     """Refuse another spec; a search may have more generations, which follow from the file."""
+    # A run with more generations begins like the shorter one
+    # (tests/engine/experiments/test_contract.py, "an extended run").
     before, now = (values.pop("search.generations", 0) for values in (held, wanted))
     paths = {**held, **wanted}
     other = [path for path in paths if held.get(path, ...) != wanted.get(path, ...)]
+    # Another version of a plug-in has its own message: loading the old version may help.
     if any(path.split(".")[-1] != "source" for path in other):
         raise ValueError("`spec` in the file must be the run's own, got another")
     if other:

@@ -16,6 +16,7 @@ from ..archive.report import Report, Row, Value
 from ..search import Stopped
 from .table_file import Table
 
+# The part that depends on nodes grows as n^0.88 from there to 500,000 (docs/reproduction.md).
 LINEAR_FROM = 16_000
 """Least number of nodes in the fit of the exponent; below it fixed costs of a call count."""
 
@@ -34,7 +35,7 @@ def report(state: Table, rows: tuple[Row, ...]) -> Report:
     )
 
 
-def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Value]:
+def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, float | None]:
     """Return exponents of the time that depends on nodes, and the most memory.
 
     The part that depends on nodes is all but the fluid, whose cells do not change. Rows that
@@ -71,7 +72,7 @@ CHUNK = 10
 """Steps of one call of a program; a run can stop between calls."""
 
 NATIVE_CHUNK = 100
-"""At most so many steps of one call of the native kernel, which lays out its arrays anew."""
+"""Most steps in one call of the native kernel; each call lays out its arrays anew."""
 
 NATIVE_PARTS = {
     "fluid": ("moments", "fluid"),
@@ -114,19 +115,20 @@ def step_row(scene: Scene, start: world.State, plan: Timing) -> dict[str, Value]
     of the compiled program, and with the kernel all arrays that it holds during the steps.
     """
     measured = _native if world.native.chosen(scene.box, start) else _jax
-    found, end = measured(scene, start, plan)
+    columns, end = measured(scene, start, plan)
     finite = all(bool(jnp.all(jnp.isfinite(x))) for x in jax.tree.leaves(end))
     return {
         "method": "microcosmos",
         "nodes": len(start.positions),
-        **found,
+        **columns,
         "status": "ok" if finite else "non-finite",
     }
 
 
 def _native(scene: Scene, start: world.State, plan: Timing) -> Measured:
     """Measure the native kernel with a thread for each core; it takes the time of each part."""
-    steps, threads = min(NATIVE_CHUNK, plan.steps), device.cores()
+    # The kernel has at most 1,024 threads.
+    steps, threads = min(NATIVE_CHUNK, plan.steps), min(device.cores(), 1024)
     spent = []
 
     def advance(scene: Scene, state: world.State) -> tuple:
@@ -265,8 +267,8 @@ def _repel(scene: Scene, state: world.State) -> world.State:
 
 def _median(part: Step, scene: Scene, start: world.State, plan: Timing) -> float:
     program = _compile(part, scene, start, plan.part_steps, plan)
-    found = [_time(program, scene, start, 1, plan)[0] for _ in range(REPEATS)]
-    return float(np.median(found)) * REPORTED / plan.part_steps
+    seconds = [_time(program, scene, start, 1, plan)[0] for _ in range(REPEATS)]
+    return float(np.median(seconds)) * REPORTED / plan.part_steps
 
 
 def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Timing) -> Any:
@@ -274,6 +276,7 @@ def _compile(step: Callable, scene: Any, start: Any, steps: int, plan: Timing) -
         return jax.lax.scan(lambda s, _: (step(scene, s), None), state, None, length=steps)[0]
 
     program = jax.jit(run, compiler_options=dict(plan.options)).lower(scene, start).compile()
+    # The first call allocates, which is no part of a step.
     jax.block_until_ready(program(scene, start))
     return program
 
@@ -291,8 +294,8 @@ def _time(program: Any, scene: Any, start: Any, calls: int, plan: Timing) -> tup
 
 def _memory(program: Any) -> int | None:
     """Return the bytes of a program's arguments, results and temporaries, if known."""
-    found = program.memory_analysis()
-    if found is None:
+    analysis = program.memory_analysis()
+    if analysis is None:
         return None
     sizes = ("argument_size_in_bytes", "output_size_in_bytes", "temp_size_in_bytes")
-    return int(sum(getattr(found, name) for name in sizes))
+    return int(sum(getattr(analysis, name) for name in sizes))

@@ -77,6 +77,8 @@ def save(spec: str, table: Table, arrays: Mapping[str, Any] | None = None) -> by
         | {"identity": row.identity and row.identity.decode()}
         for row in rows
     ]
+    # The columns are for readers of other languages; the run itself resumes from the JSON,
+    # which keeps words, nulls and types.
     tree = {
         **(arrays or {}),
         "table": {name: _column([row.values[name] for row in rows]) for name in names},

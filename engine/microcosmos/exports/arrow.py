@@ -1,18 +1,19 @@
 """Arrow tables of runs, and their Parquet and Arrow files."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from io import BytesIO
 from typing import Any
 
 import numpy as np
 
 from ..archive.export import Source, source_bytes
-from ..archive.quantities import Real
+from ..invalid import InvalidField
 from ..optional import require
+from ..quantities.real import Real
 from . import si, tables
 from .run_file import RunFile
-from .table import Column, Columns, Ragged
+from .tables import Column, Columns, Ragged
 
 FORMAT = "microcosmos-table/1"
 EXTRA = "microcosmos[exports]"
@@ -44,15 +45,23 @@ def to_arrow(
 def of_runs(runs: Sequence[RunFile], table: str, real: Real | None = None) -> Any:
     """Return a table of several runs, one after another; the first column names the run.
 
-    A column that one run lacks is null in its rows. With `real` quantities, columns in SI units
-    follow; every body then has that length.
+    A column that one run lacks is null in its rows. A field has the unit and the axis that are
+    the same for all runs, and none where they differ. With `real` quantities, columns in SI
+    units follow; every body then has that length.
     """
     pa = require("pyarrow", EXTRA)
-    parts = [of_columns(_of(run, table, real), run.name) for run in runs if table in _have(run)]
+    parts = [
+        of_columns(_of(run, table, real), run.name)
+        for run in runs
+        if table in tables.makers(run)
+    ]
     if not parts:
         known = ", ".join(tables.names(list(runs)))
-        raise ValueError(f"`table` must be one of {known}, got {table!r}")
-    whole = pa.concat_tables(parts, promote_options="default").unify_dictionaries()
+        raise InvalidField("table", f"must be one of {known}, got {table!r}")
+    fields = _agreed(parts)
+    whole = pa.concat_tables([_with(one, fields) for one in parts], promote_options="default")
+    # An Arrow file takes one dictionary for each column.
+    whole = whole.unify_dictionaries()
     about = {
         "format": FORMAT,
         "table": table,
@@ -63,8 +72,41 @@ def of_runs(runs: Sequence[RunFile], table: str, real: Real | None = None) -> An
     return whole.replace_schema_metadata(about)
 
 
-def _have(run: RunFile) -> Sequence[str]:
-    return list(tables.makers(run))
+def _agreed(parts: Sequence[Any]) -> dict[str, Any]:
+    """Return a field for each column of tables, with the metadata that all of them give it.
+
+    Raises `ValueError` where values differ in type.
+    """
+    fields: dict[str, Any] = {}
+    for name in dict.fromkeys(name for part in parts for name in part.column_names):
+        having = [part for part in parts if name in part.column_names]
+        found = [part.schema.field(name) for part in having]
+        kinds = {one.type for one in found}
+        if len(kinds) > 1:  # A table without any value does not know its type.
+            filled = [part.column(name) for part in having if not _is_empty(part.column(name))]
+            kinds = {one.type for one in filled} or {found[0].type}
+        if len(kinds) > 1:
+            got = ", ".join(sorted(map(str, kinds)))
+            raise InvalidField(name, f"must have one type in all runs; got {got}")
+        first, *others = (one.metadata or {} for one in found)
+        about = {k: v for k, v in first.items() if all(one.get(k) == v for one in others)}
+        fields[name] = found[0].with_type(kinds.pop()).with_metadata(about)
+    return fields
+
+
+def _is_empty(column: Any) -> bool:
+    return all(one.is_null(nan_is_null=True).true_count == len(one) for one in column.chunks)
+
+
+def _with(table: Any, fields: Mapping[str, Any]) -> Any:
+    """Return a table with these fields; a column of another type, without values, is null."""
+    pa = require("pyarrow", EXTRA)
+    of = pa.schema([fields[name] for name in table.column_names])
+    columns = [
+        old if old.type == new.type else pa.nulls(len(old), new.type)
+        for old, new in zip(table.columns, of, strict=True)
+    ]
+    return pa.table(columns, schema=of)
 
 
 def _of(run: RunFile, table: str, real: Real | None) -> Columns:
@@ -92,12 +134,12 @@ def _rows(column: Column) -> int:
 
 
 def _about(column: Column) -> dict[str, str]:
-    found = {"title": column.title}
-    found |= {"unit": column.unit} if column.unit else {}
+    about = {"title": column.title}
+    about |= {"unit": column.unit} if column.unit else {}
     if column.axis is not None:
         names = ("low", "high", "bins", "scale")
-        found["axis"] = json.dumps({name: column.axis[name] for name in names})
-    return found
+        about["axis"] = json.dumps({name: column.axis[name] for name in names})
+    return about
 
 
 def _array(pa: Any, column: Column) -> Any:
@@ -114,6 +156,7 @@ def _values(pa: Any, values: Any) -> Any:
         kind = pa.list_(pa.field(ITEM, items.type))
         return pa.ListArray.from_arrays(pa.array(offsets), items, type=kind)
     if not isinstance(values, np.ndarray):
+        # An explicit type: an archive without elites has no text to infer it from.
         return pa.array(values, pa.string())
     if values.ndim == 2:
         flat = pa.array(np.ascontiguousarray(values).ravel())
@@ -131,6 +174,7 @@ def parquet(table: Any) -> bytes:
     words = [one.name for one in table.schema if pa.types.is_dictionary(one.type)]
     leaves = [_leaf(pa, one.name, one.type) for one in table.schema]
     split = [path for path, kind in leaves if pa.types.is_floating(kind)]
+    # Parquet prefers a dictionary to the split of bytes, so only words have one.
     options = {"use_dictionary": words, "use_byte_stream_split": split, "compression": "zstd"}
     require("pyarrow.parquet", EXTRA).write_table(table, file, **options)
     return file.getvalue()

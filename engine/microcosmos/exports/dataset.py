@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 
 from ..archive.export import Source, source_bytes
-from ..archive.quantities import Real
 from ..optional import require
+from ..quantities.real import Real
 from .arrow import EXTRA
 from .run_file import RunFile
 from .si import elites_with_si
-from .table import Column, Elites, Ragged, values_at
-from .tables import elites
+from .tables import Column, Elites, Ragged, elites, values_at
 
 FORMAT = "microcosmos-dataset/1"
 
@@ -35,8 +34,8 @@ def to_xarray(archive: Source, *, length: str | None = None, period: str | None 
 
 def of_run(run: RunFile, real: Real | None = None) -> Any:
     """Return the elites of a run as a dataset, with SI units if real quantities are given."""
-    found = elites(run)
-    return of_elites(found if real is None else elites_with_si(found, run, real))
+    selected = elites(run)
+    return of_elites(selected if real is None else elites_with_si(selected, run, real))
 
 
 def of_elites(found: Elites) -> Any:
@@ -47,9 +46,11 @@ def of_elites(found: Elites) -> Any:
     else:
         coordinates, dimensions, shape = _along(found)
     taken = {*coordinates, *dimensions, "cell"}
+    # Places of a container have gaps, and their numbers no meaning.
     row = np.arange(len(found.cell)) if found.kind == "pool" else found.cell
     variables = {}
     for name, column in found.columns.items():
+        # The coordinates of the dataset say both.
         if name == "cell" or name.startswith("bin_"):
             continue
         named = f"elite_{name}" if name in taken else name
@@ -119,6 +120,7 @@ def _attributes(found: Elites) -> dict[str, Any]:
 
 def netcdf(dataset: Any) -> bytes:
     """Return a netCDF 4 file, written by h5netcdf."""
+    # It writes into memory, where the netCDF4 library needs a file.
     require("h5netcdf", EXTRA)
     file = BytesIO()
     packed = {

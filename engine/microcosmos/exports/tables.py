@@ -1,31 +1,77 @@
-"""Tables of a run's file: archive, genomes, poses, curves, lineage, or its result."""
+"""Tables of a run's file, as named columns with titles and units, before they become Arrow."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..archive.export import repeated, tessellation
+from ..archive import file
+from ..archive.curves import COUNTS, CURVES
+from ..archive.export import ends, repeated, tessellation
 from ..archive.poses import streams
 from .run_file import RunFile, described, fitness_of, hexes
-from .table import Column, Columns, Elites, Ragged, placed
 
-WHOLE = ("evaluations", "infeasible", "clipped")
-"""Curves that count."""
-CURVES = {
-    "qd_score": ("QD score", "fitness"),
-    "coverage": ("Coverage, from 0 to 1", "1"),
-    "best": ("Best fitness", "fitness"),
-    "mean": ("Mean fitness of elites", "fitness"),
-    "evaluations": ("Evaluations so far", "1"),
-    "infeasible": ("Infeasible evaluations so far", "1"),
-    "clipped": ("Evaluations beyond an end of an axis", "1"),
-    "corrected_qd_score": ("Corrected QD score; NaN where nothing was repeated", "fitness"),
-    "corrected_coverage": ("Corrected coverage; NaN where nothing was repeated", "1"),
-    "hit_rate": ("Share of repeats in their own cell; NaN where nothing was repeated", "1"),
-}
+
+class Ragged(NamedTuple):
+    """A list in each row: all items one after another, and the number in each row."""
+
+    items: Any
+    """An array or a list of texts, or lists themselves, as another `Ragged`."""
+    counts: np.ndarray
+
+
+class Column(NamedTuple):
+    """Values of all rows, with their meaning.
+
+    An array of two axes has a list of one length in each row.
+    """
+
+    values: np.ndarray | Sequence[str | None] | Ragged
+    title: str
+    unit: str = "1"
+    repeated: bool = False
+    """True for a few texts that repeat, which a dictionary then holds."""
+    axis: Mapping[str, Any] | None = None
+    """Ends, bins and scale, if it is an axis of the archive."""
+
+
+Columns = dict[str, Column]
+
+
+@dataclass(frozen=True)
+class Elites:
+    """The elites of an archive: how cells lie, and columns with an entry for each elite."""
+
+    kind: str
+    """`grid`, `cvt` or `pool`, as `client.Archive.kind`."""
+    axes: Sequence[Mapping[str, Any]]
+    cell: np.ndarray
+    columns: Columns
+    centroids: np.ndarray | None = None
+    """(cell, axis) of a CVT, from 0 to 1 on the axes' own scales, where they are known."""
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Return the bins along each axis of a grid."""
+        return tuple(axis["bins"] for axis in self.axes)
+
+
+def values_at(places: np.ndarray, axis: Mapping[str, Any]) -> np.ndarray:
+    """Return raw values at places from 0 to 1 on an axis' own scale."""
+    low, high = ends(dict(axis))
+    values = low + np.asarray(places, float) * (high - low)
+    return 10**values if axis["scale"] == "log10" else values
+
+
+def placed(name: str, taken: Mapping[str, Any]) -> str:
+    """Return a name that no other column has."""
+    return name if name not in taken else placed(f"measure_{name}", taken)
+
+
 REPEATS = {
     "repeats": ("Evaluations under disturbed conditions", "1"),
     "repeats_failed": ("Infeasible ones among them", "1"),
@@ -55,10 +101,10 @@ def elites(run: RunFile) -> Elites:
     }
     if around is None and not pool:
         columns |= bins(archive["cell"], list(axes.values()))
-    for i, name in enumerate(run.measures):
+    for name, values in run.measures.items():
         title, of = described(name, run.plugins)
-        column = Column(archive["measures"][:, i], title, of, axis=axes.get(name))
-        columns[placed(name, columns)] = column
+        # A plug-in may name its measure as a column of ours.
+        columns[placed(name, columns)] = Column(values, title, of, axis=axes.get(name))
     for name, values in repeated(archive).items():
         columns[name] = Column(values, *REPEATS[name])
     kind = "pool" if pool else "grid" if around is None else "cvt"
@@ -68,12 +114,12 @@ def elites(run: RunFile) -> Elites:
 
 def bins(cell: np.ndarray, axes: list[dict[str, Any]]) -> Columns:
     """Return the bin of cells of a grid along each axis."""
-    found = np.unravel_index(cell, [axis["bins"] for axis in axes])
+    places = np.unravel_index(cell, [axis["bins"] for axis in axes])
     return {
         f"bin_{axis['name']}": Column(
             one.astype(np.int32), f"Bin of {axis['name']}, from 0, in the cell's number"
         )
-        for axis, one in zip(axes, found, strict=True)
+        for axis, one in zip(axes, places, strict=True)
     }
 
 
@@ -84,39 +130,41 @@ def archive(run: RunFile) -> Columns:
 
 def genomes(run: RunFile) -> Columns:
     """Return the genes of each elite: a list for each array of the genome."""
-    found = run.archive()
+    archive = run.archive()
     return {
-        "creature": Column(hexes(found["creature"]), "SHA-256 of the creature's identity"),
+        "creature": Column(hexes(archive["creature"]), "SHA-256 of the creature's identity"),
         **{
             name: Column(_listed(genes), f"Genes: {name.replace('_', ' ')}")
-            for name, genes in sorted(found["genomes"].items())
+            for name, genes in sorted(archive["genomes"].items())
         },
     }
 
 
 def _listed(genes: np.ndarray) -> Ragged:
-    """Rows have one length, but those of another run may have another."""
+    """Return genes as lists, since rows of another run may have another length."""
     return Ragged(genes.ravel(), np.full(len(genes), prod(genes.shape[1:])))
 
 
 def curves(run: RunFile) -> Columns:
     """Return a row for each generation."""
+    # `archive` refuses runs without one, whose curves have other columns.
     tree, count = run.tree, len(run.archive() and run.tree["curves"]["qd_score"])
     unit = fitness_of(run.spec["task"], run.plugins)
     numbers = np.arange(1, count + 1, dtype=np.int32)
-    found = {"generation": Column(numbers, "Generation", "generations")}
+    columns = {"generation": Column(numbers, "Generation", "generations")}
     for name, values in tree["curves"].items():
-        title, of = CURVES[name]
-        whole = values.astype(np.int64) if name in WHOLE else values
-        found[name] = Column(whole, title, unit if of == "fitness" else of)
+        # Files keep all curves as reals; counts are whole in a table.
+        whole = values.astype(np.int64) if name in COUNTS else values
+        curve = CURVES[name]
+        columns[name] = Column(whole, curve.description, unit if curve.of == "fitness" else "1")
     for name, values in tree["emitters"].items():
         for i, column in enumerate(values.T):
-            found[f"emitter_{i}_{name}"] = Column(column, f"Emitter {i}: {name}")
+            columns[f"emitter_{i}_{name}"] = Column(column, f"Emitter {i}: {name}")
     for group in ("screening", "fronts"):
         for name, values in tree.get(group, {}).items():
             about = f"{group}: {name}".replace("_", " ").capitalize()
-            found[f"{group}_{name}"] = Column(values, about)
-    return found
+            columns[f"{group}_{name}"] = Column(values, about)
+    return columns
 
 
 def lineage(run: RunFile) -> Columns:
@@ -127,7 +175,7 @@ def lineage(run: RunFile) -> Columns:
     present = rows["parents"].any(-1)
     operators = json.loads(run.attributes["operators"])
     unit = fitness_of(run.spec["task"], run.plugins)
-    found: Columns = {
+    columns: Columns = {
         "creature": Column(hexes(rows["creature"]), "SHA-256 of the creature's identity"),
         "parents": Column(
             Ragged(hexes(rows["parents"][present]), present.sum(1)),
@@ -141,8 +189,8 @@ def lineage(run: RunFile) -> Columns:
     for i, axis in enumerate(axes):
         title, of = described(axis["name"], run.plugins)
         values = rows["descriptors"][:, i]
-        found[placed(axis["name"], found)] = Column(values, title, of, axis=axis)
-    return found
+        columns[placed(axis["name"], columns)] = Column(values, title, of, axis=axis)
+    return columns
 
 
 def poses(run: RunFile) -> Columns:
@@ -151,14 +199,16 @@ def poses(run: RunFile) -> Columns:
     return pose_columns(streams(run.tree, run.attributes))
 
 
-def pose_columns(found: list[Any]) -> Columns:
+def pose_columns(streams_of_elites: list[Any]) -> Columns:
     """Return pose streams as columns; see `archive.poses.PoseStream`."""
-    frames = np.array([len(one.positions) for one in found], int)
-    nodes = np.array([one.positions.shape[1] for one in found], int)
-    cells = [one.cells for one in found]
+    frames = np.array([len(one.positions) for one in streams_of_elites], int)
+    nodes = np.array([one.positions.shape[1] for one in streams_of_elites], int)
+    cells = [one.cells for one in streams_of_elites]
 
     def places(axis: int) -> Ragged:
         flat = [each[..., axis].ravel() for each in cells]
+        # NumPy joins no empty list, and an archive may have no elite
+        # (test_a_ro_crate_has_a_table_without_rows).
         items = np.concatenate(flat) if flat else np.zeros(0, np.float32)
         return Ragged(Ragged(items, np.repeat(nodes, frames)), frames)
 
@@ -166,19 +216,29 @@ def pose_columns(found: list[Any]) -> Columns:
         items = np.concatenate(parts).astype(kind) if parts else np.zeros(0, kind)
         return Ragged(items, np.array([len(part) for part in parts], int))
 
-    edges = joined([np.asarray(one.edges).reshape(-1, 2) for one in found], "i4")
+    edges = joined([np.asarray(one.edges).reshape(-1, 2) for one in streams_of_elites], "i4")
     paired = edges._replace(items=edges.items.reshape(-1, 2))
     return {
-        "creature": Column([one.creature for one in found], "SHA-256 of the identity"),
+        "creature": Column(
+            [one.creature for one in streams_of_elites], "SHA-256 of the identity"
+        ),
         "nodes": Column(nodes.astype(np.int32), "Nodes of the body"),
-        "strokes": _each(found, "strokes", np.int32, "Strokes that the frames span"),
-        "length": _each(found, "length", np.float32, "Length of the body", "cells"),
-        "step": Column(joined([one.times for one in found], "i4"), "Steps done", "steps"),
+        "strokes": _each(
+            streams_of_elites, "strokes", np.int32, "Strokes that the frames span"
+        ),
+        "length": _each(streams_of_elites, "length", np.float32, "Length of the body", "cells"),
+        "step": Column(
+            joined([one.times for one in streams_of_elites], "i4"), "Steps done", "steps"
+        ),
         "x": Column(places(0), "x of each node in each frame, unwrapped", "cells"),
         "y": Column(places(1), "y of each node in each frame, unwrapped", "cells"),
         "edges": Column(paired, "Pairs of nodes that edges connect"),
-        "path_x": Column(joined([one.path[:, 0] for one in found], "f4"), _PATH, "cells"),
-        "path_y": Column(joined([one.path[:, 1] for one in found], "f4"), _PATH, "cells"),
+        "path_x": Column(
+            joined([one.path[:, 0] for one in streams_of_elites], "f4"), _PATH, "cells"
+        ),
+        "path_y": Column(
+            joined([one.path[:, 1] for one in streams_of_elites], "f4"), _PATH, "cells"
+        ),
     }
 
 
@@ -208,7 +268,7 @@ def _values(values: list[Any]) -> Any:
 
 
 def _word(numbers: np.ndarray, words: list[str], title: str) -> Column:
-    return Column([words[number] for number in numbers.tolist()], title, repeated=True)
+    return Column(file.words(numbers, words), title, repeated=True)
 
 
 Maker = Callable[[RunFile], Columns]

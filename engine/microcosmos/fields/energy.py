@@ -1,7 +1,7 @@
-"""Energy: packets that creatures sense and collect.
+"""The field of energy that creatures sense and collect.
 
-The field is the one of the Microcosmos paper: Gaussian packets at random places. Nodes
-may consume it; it may diffuse.
+It is that of the Microcosmos paper: Gaussian packets at random places. Nodes may consume it;
+it may diffuse.
 """
 
 from dataclasses import dataclass
@@ -38,14 +38,17 @@ class Packets:
 
 
 def packets(size: tuple[int, int], chosen: Packets) -> np.ndarray:
-    """Sum all packets in a periodic box, each with all images that reach into it."""
+    """Return the sum of all packets in a periodic box, with the images that reach into it."""
     places = np.random.default_rng(chosen.seed).uniform(0, size, (chosen.count, 2))
     planes = []
     for axis in range(2):
         away = np.arange(size[axis])[None] - places[:, axis, None]
+        # Beyond 8 widths an image has less than 10⁻¹³ of its amplitude.
         boxes = 1 + int(np.ceil(8 * chosen.width / size[axis]))
         images = away[:, :, None] + size[axis] * np.arange(-boxes, boxes + 1)
         planes.append(exact.exponential(-0.5 * (images / chosen.width) ** 2).sum(-1))
+    # One packet after another: a library adds up a matrix product in an order of its own, which
+    # differs between processors (see `exact`).
     total = np.zeros(size)
     for x, y in zip(*planes, strict=True):
         total += x[:, None] * y[None]
@@ -59,7 +62,7 @@ def placements(size: tuple[int, int], count: int, seed: int) -> np.ndarray:
 
 
 def diffuse(field: Plane, diffusion: Float[Array, ""]) -> Plane:
-    """Take one explicit step of diffusion; the sum over the box stays."""
+    """Return the field after an explicit step of diffusion, which keeps its sum."""
     around = sum(jnp.roll(field, shift, axis) for axis in (0, 1) for shift in (-1, 1))
     return field + diffusion * (around - 4 * field)
 

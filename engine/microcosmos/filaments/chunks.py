@@ -20,7 +20,7 @@ def first_chunk(
     edges: Int[np.ndarray, "edge 2"],
     joints: Int[np.ndarray, "joint 2"],
 ) -> tuple[int, int]:
-    """Count nodes and edges of the first chunk of equal bodies; all if bodies differ.
+    """Count the nodes and the edges in the first chunk of equal bodies; all if bodies differ.
 
     `member` is the body of each node, ascending from 0.
     """
@@ -46,13 +46,16 @@ def in_chunks(
     chunks = -(-nodes // chunk)
 
     def split(x):
+        # Joints and edges are not as many as nodes: each array has its own rows in a chunk.
         rows = len(x) * chunk // nodes
         filled = jnp.pad(x, [(0, chunks * rows - len(x))] + [(0, 0)] * (x.ndim - 1))
         return filled.reshape(chunks, rows, *x.shape[1:])
 
-    found = jax.lax.map(work, jax.tree.map(split, given))
+    results = jax.lax.map(work, jax.tree.map(split, given))
+    # `work` returns fewer arrays than it takes; rows that fill up the last chunk are cut off.
     return tuple(
-        x.reshape(-1, *x.shape[2:])[: len(like)] for x, like in zip(found, given, strict=False)
+        x.reshape(-1, *x.shape[2:])[: len(like)]
+        for x, like in zip(results, given, strict=False)
     )
 
 

@@ -1,9 +1,9 @@
 """Shape matching: fit the whole rest shape of a body to where the fluid carried its nodes.
 
-Shape matching: Müller, Heidelberger, Teschner and Gross, ACM Trans. Graph. 24, 471 (2005), in
-the plane and with equal masses. It is what sweeps of constraints with stiffness 1 converge to,
-in closed form: no zigzag is left, and the shape does not depend on spacing, sweeps or step.
-The fit keeps the mean position and the angular momentum of the displacements.
+The method is that of Müller, Heidelberger, Teschner and Gross, ACM Trans. Graph. 24, 471
+(2005), in the plane and with equal masses. Sweeps of constraints with stiffness 1 converge to
+the same shape; in closed form no zigzag is left, and the shape does not depend on spacing,
+sweeps or step. The fit keeps the mean position and the angular momentum of the displacements.
 """
 
 import equinox as eqx
@@ -48,8 +48,8 @@ def rest_positions(rest: Rest, layout: Layout) -> Float[Array, "*time node 2"]:
 def softened(rest: Rest, angles: Angles, joints: Int[Array, "joint 2"], layout: Layout) -> Rest:
     """Return the rest shape towards which soft joints turn in a step.
 
-    They keep the rest of their error: in a fluid at rest it decays exponentially. `angles` are
-    those of the edges that the fluid has carried.
+    A step removes the share `layout.bend` of a joint's error, so the error decays exponentially
+    in a fluid at rest. `angles` are those of the edges that the fluid has carried, in rad.
     """
     if layout.bend is None:
         return rest
@@ -77,6 +77,7 @@ def fitted(
     """
     ones = jnp.ones_like(shape[:, :1])
     weight = ones if present is None else ones * present[:, None]
+    # Absent nodes stay in the sums with weight 0: shapes of arrays must not depend on growth.
     count = pieces.total(weight)
 
     def middle(x):
@@ -87,6 +88,7 @@ def fitted(
     x, y = goal.T
     cosine = pieces.total(weight[:, 0] * (x * arms[:, 0] + y * arms[:, 1]))
     sine = pieces.total(weight[:, 0] * (x * arms[:, 1] - y * arms[:, 0]))
+    # A piece of one node has no direction: the constant keeps the division finite.
     size = jnp.sqrt(cosine**2 + sine**2 + 1e-24)
     c, s = pieces.per_node(cosine / size), pieces.per_node(sine / size)
     return centre + jnp.stack([c * x - s * y, s * x + c * y], 1)

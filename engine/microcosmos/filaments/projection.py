@@ -53,12 +53,14 @@ class Rest(eqx.Module):
 
 def wrap(angle: Float[Array, "*shape"]) -> Float[Array, "*shape"]:
     """Return the same angle within ±π; its gradient is 1."""
+    # Without a derivative of the rounding the slope is 1 also at a jump.
     return angle - 2 * jnp.pi * jax.lax.stop_gradient(jnp.round(angle / (2 * jnp.pi)))
 
 
 def edge_angles(positions: Positions, rods: Rods) -> Angles:
     """Return the direction of every edge, in radians; 0 without a length."""
     x, y = (positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]).T
+    # The arctangent has no gradient at the origin, where two nodes coincide.
     return arctangent(y, jnp.where((x == 0) & (y == 0), 1.0, x))
 
 
@@ -70,6 +72,7 @@ def normals(
     if present is not None:
         across = jnp.where(present[:, None], across, 0.0)
     total = jnp.zeros((nodes, 2), angles.dtype).at[rods.edges].add(across[:, None])
+    # Edges that fold back cancel: the constant keeps value and gradient finite.
     return total / jnp.sqrt(jnp.sum(total * total, 1, keepdims=True) + 1e-12)
 
 
@@ -80,6 +83,8 @@ def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:
 
 def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
     """Sweep the joints once: each edge corrects half of the error θ₂ − θ₁ − θ_rest."""
+    # Each colour sees what the colours before it have left (Gauss-Seidel). Measured: Jacobi
+    # sweeps, which average at branches, do not keep the sum of displacements at zero.
     for colour in rods.joint_colours:
         difference = colour.sign * (angles[colour.partner] - angles)
         error = wrap(difference - rest.angle[colour.constraint])
@@ -89,6 +94,7 @@ def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:
 
 def stretch(positions: Positions, angles: Angles, rods: Rods, rest: Rest) -> Positions:
     """Sweep the edges once: correct lengths along the tangent, and shear to the director."""
+    # Stretching leaves angles alone, so that directors are the same for all colours.
     directors = jnp.stack([jnp.cos(angles), jnp.sin(angles)], 1) * rest.length[:, None]
     for colour in rods.edge_colours:
         sign = colour.sign[:, None]
@@ -125,6 +131,7 @@ def project(
 def _sweeps(positions, angles, rods, rest, iterations):
     def sweep(carry, _):
         positions, angles = carry
+        # Bend first: stretching then shears the edges towards angles of the same sweep.
         angles = bend(angles, rods, rest)
         return (stretch(positions, angles, rods, rest), angles), None
 

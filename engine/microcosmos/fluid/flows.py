@@ -1,4 +1,4 @@
-"""Steady flows in closed form, with the forces that keep them up, and fluids that are in them.
+"""Steady flows in closed form, the forces that drive them, and populations in these flows.
 
 Poiseuille flow is driven by a uniform force between walls, Kolmogorov flow by a sine force. The
 vortices of Taylor and Green are a steady solution under F = ν |k|² u: their inertia is balanced
@@ -30,20 +30,24 @@ class Developed:
 
 
 def poiseuille(size: Size, speed: float, viscosity: float) -> Developed:
-    """Return the flow along x, of this speed in the middle, between walls in the row y = 0."""
+    """Return the flow along x between walls in the row y = 0; `speed` is that in the middle."""
+    # Bounce-back puts walls halfway between cells: row 1 is half a cell away from its wall.
     across = size[1] - 1.0
     y = np.maximum(np.arange(size[1]) - 0.5, 0.0)
     u, slope = (
         4 * speed * y * (across - y) / across**2,
         4 * speed * (across - 2 * y) / across**2,
     )
-    slope[0] = 0
+    slope[0] = 0  # The wall itself is not sheared.
     force = np.array([8 * viscosity * speed / across**2, 0.0])
     return _along_x(size, u, slope, force)
 
 
 def shear(size: Size, speed: float, viscosity: float) -> Developed:
-    """Return the sine wave along x whose shear is strongest in the middle of the box."""
+    """Return the flow along x with u = `speed` sin(2 π y / height).
+
+    Its shear is strongest in the middle of the box.
+    """
     k = 2 * np.pi / size[1]
     y = np.arange(size[1])
     u, slope = speed * np.sin(k * y), speed * k * np.cos(k * y)
@@ -67,17 +71,18 @@ def vortices(size: Size, speed: float, viscosity: float, count: int) -> Develope
     stretch = strength * kx * ky * sx * sy
     twist = 0.5 * strength * (kx**2 - ky**2) * cx * cy
     force = viscosity * (kx**2 + ky**2) * u
+    # The pressure is the deviation of the density times the square of the speed of sound, 1/3.
     return Developed(u, 1 + 3 * pressure, (stretch, -stretch, twist), force)
 
 
 def developed(flow: Developed, viscosity: float) -> Populations:
-    """Return the fluid in a steady flow: equilibrium and the viscous stress.
+    """Return the populations of a steady flow: equilibrium and the viscous stress.
 
-    The momentum of populations lacks half a step of force. The stress is that of Chapman and
-    Enskog, to first order.
+    The stress is that of Chapman and Enskog, to first order.
     """
     force = flow.force if flow.force.ndim == 3 else flow.force[:, None, None]
     tau, (xx, yy, xy) = 3 * viscosity + 0.5, flow.strain
+    # Populations carry the momentum before the half step of force that `collide` adds.
     u = flow.velocity - 0.5 * force / flow.density[None]
     f = equilibrium(jnp.asarray(flow.density), jnp.asarray(u))
     return tuple(
@@ -87,6 +92,7 @@ def developed(flow: Developed, viscosity: float) -> Populations:
 
 
 def _stress(c: tuple[int, int], xx: Plane, yy: Plane, xy: Plane) -> Plane:
+    # Q : ∇u with Q = c c − I/3.
     return c[0] ** 2 * xx + c[1] ** 2 * yy + 2 * c[0] * c[1] * xy - (xx + yy) / 3
 
 

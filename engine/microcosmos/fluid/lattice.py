@@ -23,7 +23,8 @@ def density(f: Populations) -> Plane:
 
 
 def deviation(f: Populations) -> Plane:
-    """Return the density minus 1; small numbers are added first."""
+    """Return the density minus 1."""
+    # Populations of a calm fluid are small beside 1: added to it first, they would lose digits.
     return f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]))
 
 
@@ -37,8 +38,9 @@ def momentum(f: Populations) -> tuple[Plane, Plane]:
 
 
 def fastest(rho: Plane, momentum: tuple[Plane, Plane]) -> Float[Array, ""]:
-    """Return the largest speed of the fluid."""
+    """Return the largest speed of the fluid, cells a step."""
     x, y = momentum
+    # One root of the largest square; the constant keeps it differentiable in a fluid at rest.
     return jnp.sqrt(jnp.max((x * x + y * y) / (rho * rho)) + 1e-24)
 
 

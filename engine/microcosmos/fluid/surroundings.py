@@ -22,7 +22,7 @@ class Sponge(eqx.Module):
 
 
 class Surroundings(eqx.Module):
-    """Actions on the fluid besides bodies; None costs nothing."""
+    """Walls and forces that act on the fluid besides bodies; None: absent, at no cost."""
 
     force: Float[Array, "2"] | None = None
     """The same force density in every cell."""
@@ -51,6 +51,7 @@ def advance(
         force = force + surroundings.force_field
     collided = collision(f, rho, momentum, force, rates)
     f = stream(collided)
+    # Walls need the populations before streaming: each goes back where it came from.
     if surroundings.solid is not None:
         f = _bounce(f, collided, surroundings.solid)
     if surroundings.sponge is not None:
@@ -63,8 +64,10 @@ def _bounce(streamed: Populations, collided: Populations, solid: Bool[Array, "x 
     out = [streamed[0]]
     for pair in PAIRS:
         for i, opposite in (pair, pair[::-1]):
+            # A cell gets population i from the cell behind it, so the mask streams likewise.
             from_wall = jnp.roll(solid, DIRECTIONS[i], (0, 1))
             out.append(jnp.where(from_wall, collided[opposite], streamed[i]))
+    # Deviations are 0 in solid cells, at rest and density 1, so that no mass collects there.
     return tuple(jnp.where(solid, 0.0, plane) for plane in out)
 
 

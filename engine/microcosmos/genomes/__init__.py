@@ -2,14 +2,13 @@
 
 from .actuators import Actuators, carried_out
 from .body_graph import BodyGraphEncoding
-from .control import CPPNControl
+from .control import CPPNControl, advance
 from .cppn import ACTIVATIONS, CPPN, evaluate, minimal
 from .development import Controls, develop, function_of, linear, rest_shape, sine_cosine
-from .direct import Direct
 from .encoding import Drive, Encoding
-from .fold import FoldEncoding, added, scaled
 from .genotype import (
     SEGMENT,
+    BodyGraph,
     Genotype,
     Graph,
     Vector,
@@ -23,9 +22,15 @@ from .genotype import (
     words,
     write,
 )
-from .grown import Grown
-from .plan import BodyGraph
-from .plugin import Clock, PluginEncoding
-from .recurrent import advance
-from .waves import fourier, phases, table, wave
-from .weights import Layers, Weights, forward
+from .vectors import (
+    Clock,
+    Direct,
+    FoldEncoding,
+    PluginEncoding,
+    added,
+    fourier,
+    phases,
+    scaled,
+    table,
+    wave,
+)

@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PyTree
 
 from ..filaments import Layout, Rest, fitted, rest_positions, turns, wrap
-from ..world import Actuators, State, World, edges_there
+from ..world import Actuators, State, World, present_edges
 from .encoding import Drive
 
 
@@ -31,7 +31,7 @@ class Response(eqx.Module):
 
 
 def carried_out(driven: Drive, actuators: Actuators) -> Drive:
-    """Return the simulation with the commands of its controller carried out by actuators."""
+    """Return the simulation in which actuators carry out the controller's commands."""
     if driven.controller is not None:
         driven = replace(driven, controller=replace(driven.controller, actuators=actuators))
     if isinstance(driven.inputs, Rest):
@@ -41,6 +41,7 @@ def carried_out(driven: Drive, actuators: Actuators) -> Drive:
 
 def _open_loop(driven: Drive, actuators: Actuators) -> Drive:
     commands = bounded(driven.inputs, actuators, driven.world)
+    # The first command, at time 0, is the shape in which the body stands.
     start = shape_of(driven.start, driven.world, actuators.layout)
     commands = jax.tree.map(lambda x, y: jnp.concatenate([x[None], y]), start, commands)
     present = driven.world.present
@@ -58,6 +59,7 @@ def _closed_loop(driven: Drive, actuators: Actuators) -> Drive:
     begun = shape_of(driven.start, driven.world, actuators.layout)
 
     def remember(world: World, state: State, given: Any) -> Response:
+        # The controller sees its own memory alone, as it does without actuators.
         memory = state.memory
         state = replace(state, memory=memory.controller)
         state = replace(state, memory=driven.remember(world, state, given))
@@ -85,6 +87,7 @@ def shape_of(state: State, world: World, layout: Layout) -> Rest:
     first, second = world.rods.joints.T
     turned = wrap(state.angles[second] - state.angles[first] - layout.rest_angle)
     v = state.positions[world.rods.edges[:, 1]] - state.positions[world.rods.edges[:, 0]]
+    # The constant keeps the root differentiable where two nodes coincide.
     return Rest(layout.rest_angle + turned, jnp.sqrt(jnp.sum(v * v, 1) + 1e-24))
 
 
@@ -93,11 +96,13 @@ def bounded(rest: Rest, actuators: Actuators, world: World) -> Rest:
     if actuators.max_bend is None:
         return rest
     turned = turns(rest, actuators.layout)
-    there = edges_there(world)
-    if there is not None:  # A grown body has its first edge.
-        there = jnp.broadcast_to(there, turned.shape)
-        turned = jnp.where(there, turned, turned[..., :1])
+    present = present_edges(world)
+    if present is not None:
+        # Absent edges turn with the first, which every grown body has: they widen no span.
+        present = jnp.broadcast_to(present, turned.shape)
+        turned = jnp.where(present, turned, turned[..., :1])
     span = jnp.max(turned, -1) - jnp.min(turned, -1)
+    # A body at rest has no span: the least one keeps quotient and gradient finite.
     share = jnp.minimum(1.0, actuators.max_bend / jnp.maximum(span, 1e-6))[..., None]
     straight = jnp.broadcast_to(actuators.layout.rest_angle, rest.angle.shape)
     return Rest(straight + share * (rest.angle - straight), rest.length)
@@ -114,6 +119,7 @@ def fastest(
     squares = jnp.sum(moved * moved, 1)
     if present is not None:
         squares = jnp.where(present, squares, 0.0)
+    # The constant keeps the root, and quotients by it, finite for a body that does not move.
     return jnp.sqrt(jnp.max(squares) + 1e-20)
 
 

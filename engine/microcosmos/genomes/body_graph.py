@@ -27,15 +27,15 @@ from .control import drive_feed_forward, network_size
 from .cppn import evaluate, minimal
 from .development import OUTPUTS, Controls
 from .encoding import Drive, Scalar, shifted
-from .plan import BodyGraph
+from .genotype import BodyGraph
 
 
 @dataclass(frozen=True)
 class BodyGraphEncoding:
-    """A genome of two parts: a plan, and a network that knows each node's place in the body."""
+    """The encoding of two-part genomes: a plan, and a network that knows each node's place."""
 
     controls: Controls
-    """Those of the network's clock and outputs; the body's part is filled in as it grows."""
+    """Clock and scales of the network; fields of the body are filled in as it grows."""
     room: tuple[int, int]
     capacity: Capacity
     segments: Segments
@@ -43,7 +43,7 @@ class BodyGraphEncoding:
     waves: float | None = None
     """Waves of the travelling inputs from the first node to the farthest."""
     unit: bool = False
-    """Whether positions along segments are from 0 to 1, not from −1."""
+    """True if positions along segments are from 0 to 1, false if from −1."""
     softest: float = 1.0
     """Share of a joint's error that a step removes at stiffness 0; 1: all joints are stiff."""
 
@@ -56,7 +56,7 @@ class BodyGraphEncoding:
     def drive(
         self, world: World, start: State, genotype: BodyGraph, phase: Scalar | None
     ) -> Drive:
-        """Open loop, or closed loop where the network senses."""
+        """Return the simulation, in closed loop if the network senses."""
         grown, bones = self.develop(genotype)
         world, start = self._place(world, start, grown, bones)
         controls = self._controls(grown, bones)
@@ -86,9 +86,9 @@ class BodyGraphEncoding:
     def _place(
         self, world: World, start: State, grown: Grown, bones: Skeleton
     ) -> tuple[World, State]:
-        """Put the body where the one stands that the world and its start were built for."""
+        """Return the world and its start with the grown body, centred on the body before."""
         dtype = start.positions.dtype
-        ones, stiff = bones.there.astype(dtype), bones.bends.astype(dtype)
+        ones, stiff = bones.edge_present.astype(dtype), bones.bends.astype(dtype)
         rods = filaments.Rods(
             edges=bones.edges,
             edge_colours=(),  # Shapes are matched, and no constraint is swept.
@@ -112,7 +112,7 @@ class BodyGraphEncoding:
         count = jnp.sum(grown.present)
         inside = jnp.where(grown.present[:, None], positions, 0.0)
         centred = positions - (jnp.sum(inside, 0) / count)[None]
-        # What has not grown rests in the middle.
+        # Absent nodes rest in the middle, where they are finite and within the box.
         centred = jnp.where(grown.present[:, None], centred, 0.0)
         placed = centred + jnp.mean(start.positions, 0)[None]
         return world, with_bodies(world, start, placed)
@@ -121,16 +121,17 @@ class BodyGraphEncoding:
         """Return the share of each joint's error that a step removes."""
         if self.softest == 1:
             return jnp.ones_like(bones.stiffness)
+        # From `softest` to 1, by equal factors for equal changes of the gene.
         return jnp.exp(np.log(self.softest) * (1 - bones.stiffness))
 
     def _controls(self, grown: Grown, bones: Skeleton) -> Controls:
-        """Return the inputs at every node, and the rest shape that outputs are added to."""
+        """Return controls with the inputs at every node and the rest shape of the body."""
         dtype = grown.positions.dtype
         away = grown.distance[0]
         share = away / jnp.maximum(jnp.max(_among(grown, away)), 1.0)
-        there = grown.present[:, None]
-        low = jnp.min(jnp.where(there, grown.positions, jnp.inf), 0)
-        high = jnp.max(jnp.where(there, grown.positions, -jnp.inf), 0)
+        present = grown.present[:, None]
+        low = jnp.min(jnp.where(present, grown.positions, jnp.inf), 0)
+        high = jnp.max(jnp.where(present, grown.positions, -jnp.inf), 0)
         half = jnp.maximum(jnp.max(high - low) / 2, 1e-6)
         x, y = ((grown.positions - (low + high)[None] / 2) / half).T
         along = 0.5 * (1 + grown.along) if self.unit else grown.along
@@ -148,14 +149,14 @@ class BodyGraphEncoding:
 
 
 def _form(grown: Grown, bones: Skeleton) -> dict[str, Array]:
-    """Return the measures of form."""
-    found = form(grown.positions, bones.edges, grown.present, bones.there, jnp)
-    return found | {"ungrown": grown.ungrown.astype(grown.positions.dtype)}
+    """Return the measures of form by name, with the segments that found no room."""
+    measures = form(grown.positions, bones.edges, grown.present, bones.edge_present, jnp)
+    return measures | {"ungrown": grown.ungrown.astype(grown.positions.dtype)}
 
 
 def _loop(count: int, step: Any, state: Any) -> Any:
     def kept(number, before):
-        # JAX widens sums of whole numbers where it has 64 bits.
+        # JAX widens sums of whole numbers where it has 64 bits; a loop's state keeps its types.
         after = step(number, before)
         return jax.tree.map(lambda one, old: one.astype(old.dtype), after, before)
 

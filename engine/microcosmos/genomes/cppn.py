@@ -85,6 +85,7 @@ def minimal(
 def depths(network: CPPN) -> Int[Array, "node"]:
     """Return the longest path to each node over all connections, enabled or not."""
     nodes = network.node_used.shape[0]
+    # Unused rows point behind the last node, where scattering drops them.
     target = jnp.where(network.connection_used, network.target, nodes)
 
     def relax(_, depth):
@@ -106,6 +107,7 @@ def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
     """Return the values of output nodes (output, point) for inputs (input, point)."""
     nodes, given = network.node_used.shape[0], inputs.shape[0]
     weights = matrix(network, inputs.dtype)
+    # Sources come before targets. Disabled connections count too: enabling one keeps the order.
     order = jnp.argsort(depths(network), stable=True)
     functions = list(ACTIVATIONS.values())
     # Inputs and unused rows keep their values.
@@ -113,10 +115,10 @@ def evaluate(network: CPPN, inputs: Points, outputs: int) -> Points:
 
     def visit(values, node):
         def value():
-            # A written-out sum: a matrix product may be split differently elsewhere.
+            # A written-out sum: a library may split a matrix product differently elsewhere.
             z = network.bias[node] + jnp.sum(weights[node][:, None] * values, 0)
-            found = jax.lax.switch(network.activation[node], functions, z)
-            return jnp.clip(found, -BOUND, BOUND)
+            activated = jax.lax.switch(network.activation[node], functions, z)
+            return jnp.clip(activated, -BOUND, BOUND)
 
         # Branch on one row only: a branch over all values would copy them.
         return values.at[node].set(

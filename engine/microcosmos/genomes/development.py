@@ -1,4 +1,4 @@
-"""Development: from the outputs of a controller to rest angles and rest lengths."""
+"""Development: turn the outputs of a controller into rest angles and rest lengths."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Controls:
     """
 
     sites: np.ndarray | Array
-    """Inputs that say where a node is in the body, the first its position along it."""
+    """Inputs that tell a node its place in the body; the first is its position along it."""
     timer: np.ndarray | Array
     ramp: np.ndarray
     edges: np.ndarray | Array
@@ -59,7 +59,7 @@ class Controls:
 
 
 def sine_cosine(steps: int, period: float) -> np.ndarray:
-    """Return sine and cosine of the phase, (2, time)."""
+    """Return sine and cosine of the phase, (2, time); `period` is in steps."""
     phase = 2 * np.pi * np.arange(steps) / period
     return np.stack([exact.sine(phase), exact.cosine(phase)])
 
@@ -117,6 +117,7 @@ def travelling(
     timer: Float[Array, "2 time"], lag: np.ndarray | Float[Array, "node"]
 ) -> Float[Array, "2 time node"]:
     """Return sine and cosine of the phase less the lag of each node, in rad."""
+    # Lags of a fixed body are known before compilation: `exact` rounds them once.
     if isinstance(lag, np.ndarray):
         s, c = (jnp.asarray(f(lag), timer.dtype)[None] for f in (exact.sine, exact.cosine))
     else:

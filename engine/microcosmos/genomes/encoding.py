@@ -34,11 +34,11 @@ class Drive:
     clock: Float[Array, "time"] | None = None
     """Time of the controller at the end of each step, in steps; None: that of the world."""
     controller: Controller | None = None
-    """The same control for the native kernel; None: the kernel lacks it."""
+    """The same control for the native kernel; None: JAX has to carry it out."""
     layout: Layout | None = None
-    """Layout of a body that the genome has grown; None: that of the task's body."""
+    """Layout of a body whose shape is inherited; None: that of the task's body."""
     form: Mapping[str, Array] | None = None
-    """Measures of the form of a body that has grown; None: those of the task's body."""
+    """Measures of the form of a body whose shape is inherited; None: those of the task's."""
 
 
 @runtime_checkable
@@ -69,7 +69,7 @@ class Encoding(Protocol):
 
 
 class Networkless:
-    """The part of an encoding whose genotypes are vectors and hold no network."""
+    """Base of encodings whose genotypes are vectors and hold no network."""
 
     room = None
     segments = None

@@ -1,4 +1,4 @@
-"""Genotypes, networks of genes or vectors of numbers, and their form in a creature file."""
+"""Genotypes, which are networks of genes or vectors, and their form in a creature file."""
 
 from collections.abc import Mapping
 from typing import Any, TypeVar
@@ -13,7 +13,14 @@ from ..bodies.growth import Plan, plan_of
 from ..naming import ACTIVATIONS, decode, decoded, encode
 from .cppn import CPPN
 from .encoding import Encoding
-from .plan import BodyGraph
+
+
+class BodyGraph(eqx.Module):
+    """A genotype of two parts: the plan grows the body, the network drives it."""
+
+    plan: Plan
+    network: CPPN
+
 
 T = TypeVar("T")
 NEGATIVE_ZERO = np.uint32(1 << 31)
@@ -48,9 +55,9 @@ def columns(genotypes: Genotype) -> dict[str, Any]:
     return vars(genotypes)
 
 
-def from_columns(form: Genotype, found: Mapping[str, Any]) -> Genotype:
+def from_columns(form: Genotype, given: Mapping[str, Any]) -> Genotype:
     """Return the genotypes with these columns, of the kind of `form`."""
-    leaves = [found[name] for name in columns(form)]
+    leaves = [given[name] for name in columns(form)]
     return jax.tree.unflatten(jax.tree.structure(form), leaves)
 
 
@@ -80,7 +87,8 @@ def words(genotypes: Genotype) -> UInt32[Array, "row word"]:
 
 def _bits(values: Float[Array, "row gene"]) -> UInt32[Array, "row gene"]:
     bits = jax.lax.bitcast_convert_type(values.astype(jnp.float32), jnp.uint32)
-    return jnp.where(bits == NEGATIVE_ZERO, np.uint32(0), bits)  # XLA leaves out a sum with 0.
+    # Not by adding 0, as `naming.encode` does: XLA leaves such a sum out.
+    return jnp.where(bits == NEGATIVE_ZERO, np.uint32(0), bits)
 
 
 def take(genotypes: T, index: int) -> T:
@@ -98,8 +106,7 @@ def write(genotype: Genotype) -> dict[str, Any]:
 
 
 def read(genes: Mapping[str, Any], encoding: Encoding) -> Genotype:
-    """Return the genotype of a parsed creature file as NumPy arrays, as large as the encoding
-    has them."""
+    """Return the genotype of a parsed creature file as NumPy arrays of the encoding's sizes."""
     room = encoding.room
     if room is not None and encoding.segments is not None:
         plan = plan_of(decoded(genes["plan"]), encoding.segments.rows)
@@ -159,7 +166,7 @@ def from_genes(genes: Mapping[str, Any], max_nodes: int, max_connections: int) -
 
 
 def empty(max_nodes: int, max_connections: int, batch: tuple[int, ...] = ()) -> CPPN:
-    """Return writable NumPy arrays without any gene."""
+    """Return a network without any gene, as writable NumPy arrays."""
     node, connection = (*batch, max_nodes), (*batch, max_connections)
     network = CPPN(
         node_used=jnp.zeros(node, bool),

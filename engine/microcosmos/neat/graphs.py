@@ -7,14 +7,12 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, PRNGKeyArray
 
 from ..genomes import BodyGraph, Graph
-from . import crossover as crossing
-from . import distance as distances
-from . import mutation
-from .distance import Coefficients
+from . import alignment, mutation
+from .alignment import Coefficients
 from .mutation import Novelty
 from .plans import crossover_plan, mutate_plan, plan_distance
-from .rates import Rates
 from .rows import NONE
+from .settings import Rates
 
 
 def mutate(
@@ -22,8 +20,8 @@ def mutate(
 ) -> tuple[Graph, Novelty]:
     """Return a child of one parent, and its genes that need numbers.
 
-    Where the structure of a plan changes, the network stays, so that fitness tests the body.
-    Raises `ValueError` as `mutation.mutate` does.
+    If the structure of a plan changes, the network stays. Raises `ValueError` as
+    `mutation.mutate` does.
     """
     if not isinstance(genotype, BodyGraph):
         return mutation.mutate(genotype, rates, inputs, outputs, key=key)
@@ -33,6 +31,7 @@ def mutate(
     network, novelty = mutation.mutate(
         genotype.network, rates, inputs, outputs, key=network_key
     )
+    # Fitness then tests the new body with a controller that is known.
     kept = segment.changed
     network = jax.tree.map(lambda a, b: jnp.where(kept, a, b), genotype.network, network)
     novelty = jax.tree.map(lambda row: jnp.where(kept, NONE, row), novelty)
@@ -49,14 +48,14 @@ def crossover(
 ) -> Graph:
     """Return a child with the structure of the fitter parent, and matching genes of either.
 
-    See `crossover.crossover` for networks; each matching segment is inherited whole.
+    See `alignment.crossover` for networks; each matching segment is inherited whole.
     """
     if not isinstance(fitter, BodyGraph):
         assert not isinstance(other, BodyGraph)
-        return crossing.crossover(fitter, other, average, disabled, key=key)
+        return alignment.crossover(fitter, other, average, disabled, key=key)
     assert isinstance(other, BodyGraph)
     plan_key, network_key = jax.random.split(key)
-    network = crossing.crossover(
+    network = alignment.crossover(
         fitter.network, other.network, average, disabled, key=network_key
     )
     return BodyGraph(crossover_plan(fitter.plan, other.plan, key=plan_key), network)
@@ -66,7 +65,7 @@ def distance(a: Graph, b: Graph, coefficients: Coefficients) -> Float[Array, ""]
     """Return NEAT's distance; that of two-part genotypes is the sum over both parts."""
     if not isinstance(a, BodyGraph):
         assert not isinstance(b, BodyGraph)
-        return distances.distance(a, b, coefficients)
+        return alignment.distance(a, b, coefficients)
     assert isinstance(b, BodyGraph)
     bodies = plan_distance(a.plan, b.plan, coefficients)
-    return bodies + distances.distance(a.network, b.network, coefficients)
+    return bodies + alignment.distance(a.network, b.network, coefficients)

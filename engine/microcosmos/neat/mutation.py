@@ -13,9 +13,8 @@ from jaxtyping import Array, Bool, Float, Int, PRNGKeyArray
 
 from ..genomes import CPPN
 from .plans import PlanNovelty
-from .rates import Rates, bounded, one_of
-from .rng import Uniform, draws, rescaled
-from .rows import NONE, barrier
+from .rows import NONE, Uniform, barrier, draws, rescaled
+from .settings import Rates, bounded, one_of
 from .structure import add_connection, add_node, delete_connection, delete_node
 
 DECISIONS = 10
@@ -23,7 +22,7 @@ DECISIONS = 10
 
 
 class Novelty(eqx.Module):
-    """The new genes of children, and what identifies them in a generation."""
+    """The new genes of children, and the marks by which equal ones get equal numbers."""
 
     connection_row: Int[Array, "*batch"]
     """Row of the added connection, or −1; its ends identify it."""
@@ -37,7 +36,7 @@ class Novelty(eqx.Module):
 
 
 def no_novelty(like: Novelty, children: int) -> Novelty:
-    """Return the novelty, with the fields of another, of children without new genes."""
+    """Return the novelty of children without new genes, with the fields of `like`."""
     return jax.tree.map(lambda x: jnp.full((children, *x.shape[1:]), NONE, x.dtype), like)
 
 
@@ -46,7 +45,7 @@ def mutate(
 ) -> tuple[CPPN, Novelty]:
     """Return a child of one parent, and its genes that need numbers.
 
-    Raises `ValueError` where nodes can be deleted and the number of `outputs`, which are never
+    Raises `ValueError` if nodes can be deleted and the number of `outputs`, which are never
     deleted, is not given.
     """
     if rates.delete_node and outputs is None:
@@ -60,6 +59,7 @@ def mutate(
     if rates.delete_connection:
         network = delete_connection(network, rates.delete_connection, choice[1])
     network = barrier(network)
+    # Chosen before connections are added: a new one is not split in the same generation.
     splittable = network.connection_used & network.enabled
     vary, link = choice[2] < rates.values, choice[3] < rates.add_connection
     node = choice[4] < rates.add_node

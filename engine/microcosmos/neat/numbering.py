@@ -45,9 +45,10 @@ def number(children: Graph, novelty: Novelty, counters: Counters) -> tuple[Graph
 def number_plan(
     plans: Plan, novelty: PlanNovelty, first: Int[Array, ""]
 ) -> tuple[Plan, Int[Array, ""]]:
-    """Number new segments from `first` on; also return how many numbers that took.
+    """Number new segments from `first` on; also return the count of numbers used.
 
-    Segments that one mutation attaches to, or splits from, the same one get equal numbers.
+    New segments get equal numbers if the same operation attaches them to, or splits them from,
+    segments of equal number.
     """
     rank, many = ranks(novelty.of, novelty.operation)
     return plans._replace(number=_assign(plans.number, novelty.row, first + rank)), many
@@ -83,9 +84,10 @@ def number_network(
 
 
 def compacted(children: Graph, before: Counters) -> tuple[Graph, Counters]:
-    """Return some of a batch without gaps in the numbers from `before` on, in their order.
+    """Return children with dense numbers from the counters `before` on, in their order.
 
-    Takes and returns NumPy arrays; raises the counters by as many numbers as are in use.
+    Children that have left the batch leave gaps in its numbers. Takes and returns NumPy arrays;
+    the new counters come after the numbers in use.
     """
     network: Any = children.network if isinstance(children, BodyGraph) else children
     innovation, one = _dense(network.innovation, network.connection_used, before.innovation)
@@ -105,10 +107,10 @@ def _dense(
 ) -> tuple[Int[np.ndarray, "child gene"], Int[Array, ""]]:
     start = int(first)
     new = used & (numbers >= start)
-    found = np.unique(numbers[new])
-    dense = start + np.searchsorted(found, numbers)
+    in_use = np.unique(numbers[new])
+    dense = start + np.searchsorted(in_use, numbers)
     dense = np.where(new, dense, numbers).astype(numbers.dtype)
-    return dense, jnp.asarray(start + len(found), first.dtype)
+    return dense, jnp.asarray(start + len(in_use), first.dtype)
 
 
 def ranks(
@@ -120,6 +122,7 @@ def ranks(
     """
     order = jnp.lexsort((second, first))
     a, b = first[order], second[order]
+    # Sorted, equal pairs are adjacent, and children without a pair (negative) come first.
     changed = (a != jnp.roll(a, 1)) | (b != jnp.roll(b, 1))
     changed = changed.at[0].set(True) & (a >= 0)
     place = jnp.cumsum(changed) - 1
@@ -127,6 +130,7 @@ def ranks(
 
 
 def _assign(values: Int[Array, "child gene"], row, value) -> Int[Array, "child gene"]:
+    # An absent row points behind the last one, where writes are dropped: −1 would be the last.
     room = values.shape[1]
     place = jnp.where(row < 0, room, row)
     return values.at[jnp.arange(len(row)), place].set(value, mode="drop")

@@ -20,9 +20,8 @@ from ..bodies.growth import (
     Segments,
     random_segment,
 )
-from .distance import Coefficients
-from .rng import Uniform, below, draws, rescaled
-from .rows import NONE, choose, match, put
+from .alignment import Coefficients
+from .rows import NONE, Uniform, below, choose, draws, match, put, rescaled
 
 OPERATIONS = ("add", "split", "remove", "mirror", "repeat", "close", "attach")
 """Structural mutations of a plan, by number."""
@@ -40,13 +39,13 @@ class PlanRates:
     structure: float
     """A child's plan has a structural mutation."""
     vary: float
-    """Numbers of a child's plan vary, where its structure does not."""
+    """Numbers of a child's plan vary, if its structure does not."""
     values: float
-    """One of them does, where they vary at all."""
+    """Each of these numbers varies, if any do."""
 
 
 class PlanNovelty(eqx.Module):
-    """The new segment of a child, and what identifies it in a generation."""
+    """The new segment of a child, and the marks by which equal ones get equal numbers."""
 
     row: Int[Array, "*batch"]
     """Row of the new segment, or −1."""
@@ -56,7 +55,7 @@ class PlanNovelty(eqx.Module):
 
 
 class Varied(NamedTuple):
-    """What a mutation did to a plan."""
+    """The outcome of a mutation of a plan."""
 
     novelty: PlanNovelty
     changed: Bool[Array, ""]
@@ -72,6 +71,7 @@ def mutate_plan(plan: Plan, rates: PlanRates, *, key: PRNGKeyArray) -> tuple[Pla
     varies = ~changes & (decisions[2] < rates.vary)
     count = jnp.sum(plan.used)
     which, other, amount = decisions[3:6]
+    # Under `vmap` a branch computes all its cases anyway: all are made, and one is selected.
     candidates = (
         _added(plan, count, segment, limits),
         _split(plan, count, which, other),
@@ -81,18 +81,18 @@ def mutate_plan(plan: Plan, rates: PlanRates, *, key: PRNGKeyArray) -> tuple[Pla
         _closed(plan, which),
         _attached(plan, which, other, amount),
     )
-    found = _varied(plan, varies, rates.values, limits, values)
+    child = _varied(plan, varies, rates.values, limits, values)
     row = jnp.asarray(NONE)
     for number, (changed, new) in enumerate(candidates):
         chosen = operation == number
-        found = Plan(*(jnp.where(chosen, a, b) for a, b in zip(changed, found, strict=True)))
+        child = Plan(*(jnp.where(chosen, a, b) for a, b in zip(changed, child, strict=True)))
         row = jnp.where(chosen, new, row)
     # A new segment stands behind the one it is attached to, or split from.
-    of = jnp.where(row >= 0, found.number[found.parent[row]], NONE)
+    of = jnp.where(row >= 0, child.number[child.parent[row]], NONE)
     novelty = PlanNovelty(row, of, jnp.where(row >= 0, operation, NONE))
     # A root alone cannot be mirrored, nor a full plan split: such a child is like its parent.
-    differs = [jnp.any(one != old) for one, old in zip(found, plan, strict=True)]
-    return found, Varied(novelty, changes & jnp.any(jnp.stack(differs)))
+    differs = [jnp.any(one != old) for one, old in zip(child, plan, strict=True)]
+    return child, Varied(novelty, changes & jnp.any(jnp.stack(differs)))
 
 
 def crossover_plan(fitter: Plan, other: Plan, *, key: PRNGKeyArray) -> Plan:
@@ -105,8 +105,11 @@ def crossover_plan(fitter: Plan, other: Plan, *, key: PRNGKeyArray) -> Plan:
 
 
 def plan_distance(a: Plan, b: Plan, coefficients: Coefficients) -> Float[Array, ""]:
-    """Return NEAT's distance of plans: unmatched segments over those of the larger plan, and
-    the mean difference of matching ones, each gene over its usual range."""
+    """Return NEAT's distance of plans.
+
+    It is the share of unmatched segments in the larger plan, plus the mean difference of
+    matching segments, each gene divided by its usual range.
+    """
     row = match(a.number, a.used, b.number, b.used)
     unlike = (
         jnp.abs(a.place - b.place[row])
@@ -182,14 +185,14 @@ def _split(plan: Plan, count, which: Uniform, where: Uniform) -> Change:
     )
     # The root's own place has no meaning and stays.
     new = new._replace(place=new.place.at[0].set(plan.place[0]).astype(plan.place.dtype))
-    found = Plan(*(jnp.where(exists, a, b) for a, b in zip(new, plan, strict=True)))
-    return found, jnp.where(exists, cut + 1, NONE)
+    split = Plan(*(jnp.where(exists, a, b) for a, b in zip(new, plan, strict=True)))
+    return split, jnp.where(exists, cut + 1, NONE)
 
 
 def _place_to_cut(
     plan: Plan, which: Uniform, where: Uniform
 ) -> tuple[Int[Array, ""], Int[Array, ""], Bool[Array, ""]]:
-    """Draw a segment, the nodes of its first part, and whether any segment is long enough."""
+    """Draw a segment and the nodes of its first part; return also if any is long enough."""
     root = jnp.arange(len(plan.used)) == 0
     least = jnp.where(root, LEAST_ROOT, LEAST_LIMB)
     able = plan.used & ~plan.closed & (plan.nodes >= least + LEAST_LIMB)
@@ -217,34 +220,35 @@ def _removed(plan: Plan, which: Uniform) -> Change:
 def _mirrored(plan: Plan, which: Uniform) -> Change:
     """Mirror a segment, or remove its mirror image."""
     row = _one_limb(plan, which)
-    there = jnp.arange(len(plan.used)) == row
-    return plan._replace(mirrored=plan.mirrored ^ there), jnp.asarray(NONE)
+    chosen = jnp.arange(len(plan.used)) == row
+    return plan._replace(mirrored=plan.mirrored ^ chosen), jnp.asarray(NONE)
 
 
 def _repeated(plan: Plan, which: Uniform, more: Uniform, limits: Segments) -> Change:
     """Add or remove a copy of a segment."""
     row = _one_limb(plan, which)
     copies = jnp.clip(plan.copies + jnp.where(more < 0.6, 1, -1), 1, limits.copies)
-    there = jnp.arange(len(plan.used)) == row
-    return plan._replace(copies=jnp.where(there, copies, plan.copies)), jnp.asarray(NONE)
+    chosen = jnp.arange(len(plan.used)) == row
+    return plan._replace(copies=jnp.where(chosen, copies, plan.copies)), jnp.asarray(NONE)
 
 
 def _closed(plan: Plan, which: Uniform) -> Change:
     """Close a segment into a ring, which may lengthen it, or open a ring."""
     row, _ = choose(plan.used, which)
-    there = jnp.arange(len(plan.used)) == row
+    chosen = jnp.arange(len(plan.used)) == row
     longer = jnp.maximum(plan.nodes, LEAST_RING)
-    nodes = jnp.where(there & ~plan.closed, longer, plan.nodes)
-    return plan._replace(closed=plan.closed ^ there, nodes=nodes), jnp.asarray(NONE)
+    nodes = jnp.where(chosen & ~plan.closed, longer, plan.nodes)
+    return plan._replace(closed=plan.closed ^ chosen, nodes=nodes), jnp.asarray(NONE)
 
 
 def _attached(plan: Plan, which: Uniform, to: Uniform, where: Uniform) -> Change:
     """Attach a segment elsewhere, to one that stands before it."""
     row = _one_limb(plan, which)
-    there = jnp.arange(len(plan.used)) == row
+    chosen = jnp.arange(len(plan.used)) == row
+    # Half of the draws attach at an end, which no uniform place would hit.
     end = jnp.where(where < 0.25, 0.0, jnp.where(where < 0.5, 1.0, rescaled(where, 0.5, 1.0)))
-    parent = jnp.where(there, below(jnp.maximum(row, 1), to), plan.parent)
-    place = jnp.where(there, end, plan.place).astype(plan.place.dtype)
+    parent = jnp.where(chosen, below(jnp.maximum(row, 1), to), plan.parent)
+    place = jnp.where(chosen, end, plan.place).astype(plan.place.dtype)
     return plan._replace(parent=parent.astype(jnp.int32), place=place), jnp.asarray(NONE)
 
 
@@ -252,7 +256,7 @@ def _varied(
     plan: Plan, happens: Bool[Array, ""], rate: float, limits: Segments, uniform: Uniform
 ) -> Plan:
     """Vary some numbers of segments, each by a normal step."""
-    found = {}
+    columns = {}
     for name, draw in zip(VALUES, uniform, strict=True):
         chosen = happens & plan.used & (draw < rate)
         step = _step(rescaled(draw, 0.0, rate))
@@ -269,8 +273,8 @@ def _varied(
             new = jnp.clip(column + 0.5 * step, -MOST_CURL, MOST_CURL)
         else:
             new = jnp.clip(column + 0.2 * step, 0.0, 1.0)
-        found[name] = jnp.where(chosen, new, column).astype(column.dtype)
-    return plan._replace(**found)
+        columns[name] = jnp.where(chosen, new, column).astype(column.dtype)
+    return plan._replace(**columns)
 
 
 def _within_half_a_turn(angle: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -279,6 +283,7 @@ def _within_half_a_turn(angle: Float[Array, "..."]) -> Float[Array, "..."]:
 
 def _step(uniform: Uniform) -> Float[Array, "..."]:
     """Return a number with mean 0 and deviation 1 from a uniform one: the logistic quantile."""
+    # The quantile is infinite at 0 and 1; the bounds keep steps below 5.1 deviations.
     inside = jnp.clip(uniform, 1e-4, 1 - 1e-4)
     return jnp.log(inside / (1 - inside)) * (jnp.sqrt(3.0) / jnp.pi)
 

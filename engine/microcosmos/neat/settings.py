@@ -1,13 +1,99 @@
-"""Settings of a NEAT population, and two presets."""
+"""Rates of mutations, the distribution of new genes, and settings of a population."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Literal
 
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+from ..bounds import refuse_beyond
 from ..genomes import ACTIVATIONS
-from .distance import Coefficients
-from .rates import Rates, uniform
+from .alignment import Coefficients
+from .plans import PlanRates
+from .rows import LARGEST, Uniform
+
+Draw = Callable[[Array], Array]
+"""A function from uniform numbers in [0, 1) to random numbers around zero."""
+
+
+def normal(uniform: Uniform) -> Array:
+    """Return normal numbers with mean 0 and deviation 1."""
+    # The quantile of 0 is −∞: the bound keeps the least draw finite.
+    return np.sqrt(2) * jax.lax.erf_inv(jnp.maximum(2 * uniform - 1, -LARGEST))
+
+
+def uniform(uniform: Uniform) -> Array:
+    """Return uniform numbers between −1 and 1."""
+    return 2 * uniform - 1
+
+
+def one_of(palette: tuple[int, ...], uniform: Uniform) -> Array:
+    """Return uniformly drawn activations of the palette."""
+    place = jnp.floor(uniform * len(palette)).astype(jnp.int32)
+    return jnp.asarray(np.asarray(palette, np.int32))[place]
+
+
+CHANCES = (
+    *("weight", "replace", "activation", "toggle", "add_node", "add_connection"),
+    *("delete_node", "delete_connection", "values"),
+)
+"""Rates that are probabilities."""
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Probabilities per gene (values, activations, toggles) or per child (structure).
+
+    Raises `InvalidField` for a probability beyond 0 to 1, and for a step below 0.
+    """
+
+    weight: float
+    """A weight or bias is perturbed."""
+    weight_step: float
+    """Factor on a drawn number that perturbs a weight or bias."""
+    replace: float
+    """A weight or bias is drawn anew."""
+    new_step: float = field(default=1.0, kw_only=True)
+    """Factor on a drawn number that replaces a weight or bias."""
+    activation: float
+    toggle: float
+    add_node: float
+    add_connection: float
+    delete_node: float = 0.0
+    delete_connection: float = 0.0
+    values: float = 1.0
+    """Probability that the weights and biases of a child vary."""
+    separate: bool = False
+    """Keep values where a node or connection is added, so that fitness tests that alone."""
+    bound: float | None = None
+    """Limit of the size of weights and biases."""
+
+    def __post_init__(self) -> None:
+        refuse_beyond(0, weight_step=self.weight_step, new_step=self.new_step)
+        refuse_beyond(0, 1, **{name: getattr(self, name) for name in CHANCES})
+
+    draw: Draw = normal
+    palette: tuple[int, ...] = tuple(range(len(ACTIVATIONS)))
+    """Indices of the activations that are drawn, in `genomes.ACTIVATIONS`."""
+    recurrent: bool = False
+    """Allow added connections that close cycles or join a node to itself."""
+    blind: bool = False
+    """Draw any two nodes for an added connection, and fail where they are joined or would
+    close a cycle; otherwise draw among the possible connections."""
+    drop_split: bool = False
+    """Remove a split connection instead of disabling it."""
+    plan: PlanRates | None = None
+    """Rates of a body plan; None: genotypes have none."""
+
+
+def bounded(values: Array, rates: Rates) -> Array:
+    """Clip weights or biases to the limit."""
+    return values if rates.bound is None else jnp.clip(values, -rates.bound, rates.bound)
+
 
 SIGMOID = tuple(ACTIVATIONS).index("sigmoid")
 
@@ -20,10 +106,7 @@ class Settings:
     coefficients: Coefficients
     population: int
     threshold: float
-    """Compatibility distance of a species; its initial value where it is adjusted."""
-    target_species: int
-    """Number of species that the threshold is adjusted towards; 0: fixed threshold."""
-    threshold_step: float
+    """Compatibility distance within which networks belong to one species."""
     max_species: int
     representative: Literal["random", "nearest"]
     """A random member, or the member nearest to the former representative."""
@@ -75,8 +158,6 @@ PAPER = Settings(
     coefficients=Coefficients(excess=1.0, disjoint=1.0, weight=0.4, small=19),
     population=150,
     threshold=3.0,
-    target_species=0,
-    threshold_step=0.0,
     max_species=50,
     representative="random",
     stagnation=15,

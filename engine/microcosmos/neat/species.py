@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
 from ..genomes import BodyGraph, Graph
-from .distance import Coefficients
+from .alignment import Coefficients
 from .graphs import distance
 from .settings import Settings
 
@@ -79,7 +79,7 @@ def assign(
             closest=state.closest.at[row].set(jnp.argmin(jnp.where(joins, far, jnp.inf))),
         )
 
-    def found(state: Assignment) -> Assignment:
+    def found_species(state: Assignment) -> Assignment:
         first = jnp.argmax(state.of == UNASSIGNED)
         founded = jax.tree.map(
             lambda all_, new: all_.at[state.count].set(new[first]),
@@ -87,6 +87,7 @@ def assign(
             population,
         )
         state = state._replace(representatives=founded)
+        # A founder joins its own species whatever the threshold.
         state = join(state.count, state, jnp.arange(individuals) == first)
         return state._replace(count=state.count + 1)
 
@@ -98,7 +99,7 @@ def assign(
     none = (nobody, jnp.zeros_like(nobody), far, no_members)
     state = Assignment(representatives, count.astype(nobody.dtype), *none)
     state = jax.lax.fori_loop(0, state.count, join, state)
-    state = jax.lax.while_loop(unfinished, found, state)
+    state = jax.lax.while_loop(unfinished, found_species, state)
     return state._replace(of=jnp.where(state.of == UNASSIGNED, state.nearest, state.of))
 
 

@@ -1,11 +1,14 @@
-"""Plug-ins: fitnesses, descriptors, bodies, gaits and encodings of users; no JAX."""
+"""Plug-ins: fitnesses, descriptors, bodies, gaits, encodings and emitters of users; no JAX."""
 
 from .declaration import (
     KINDS,
     Axis,
     Declaration,
+    Emits,
+    Kind,
     body,
     descriptor,
+    emitter,
     encoding,
     fitness,
     gait,

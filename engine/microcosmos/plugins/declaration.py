@@ -2,13 +2,16 @@
 
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any, Final, Literal, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Kind = Literal["fitness", "descriptor", "body", "gait", "encoding"]
+from ..invalid import InvalidField
+from ..measures import Scale, refuse_empty_axis
+
+Kind = Literal["fitness", "descriptor", "body", "gait", "encoding", "emitter"]
 KINDS: Final = get_args(Kind)
 
 NAME = r"[a-z][a-z0-9_]{0,62}"
@@ -30,7 +33,7 @@ class Axis(BaseModel):
 
     low: float
     high: float
-    scale: Literal["linear", "log10"] = "linear"
+    scale: Scale = "linear"
 
     @model_validator(mode="after")
     def refuse_empty(self) -> Self:
@@ -38,12 +41,22 @@ class Axis(BaseModel):
         return self
 
 
-def refuse_empty_axis(low: float, high: float, scale: str = "linear") -> None:
-    """Raise `ValueError` where an axis has no length, or no logarithm."""
-    if high <= low:
-        raise ValueError(f"`high` must be above `low` ({low:g}), got {high:g}")
-    if scale == "log10" and low <= 0:
-        raise ValueError(f"`low` must be above 0 where `scale` is log10, got {low:g}")
+Genes = Literal["networks", "numbers"]
+"""Kinds of genomes that an emitter may vary."""
+Learns = Literal["nothing", "offspring", "cells"]
+"""Source from which an emitter learns: nothing (any number of its offspring may be evaluated),
+all of its offspring, or also the cells that they enter."""
+
+
+class Emits(BaseModel):
+    """Facts about an emitter: genomes that it varies, source of learning, gradients."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    varies: Annotated[tuple[Genes, ...], Field(min_length=1)]
+    learns: Learns = "nothing"
+    gradients: Annotated[int, Field(ge=0, le=65_536)] = 0
+    """Gradients of fitness and all descriptors that it needs in a generation."""
 
 
 class Declaration(BaseModel):
@@ -64,6 +77,8 @@ class Declaration(BaseModel):
     """Axis of a descriptor."""
     sizes: dict[str, Size] = {}
     """Most `nodes` of a body; `genes`, `per_joint` and `per_edge` of an encoding."""
+    emits: Emits | None = None
+    """Facts about an emitter."""
     settings: dict[str, Any] | None = None
     """JSON schema of the settings, if there are any."""
     defaults: dict[str, Any] = {}
@@ -96,11 +111,12 @@ def descriptor(
     title: str,
     low: float,
     high: float,
-    scale: Literal["linear", "log10"] = "linear",
+    scale: Scale = "linear",
     unit: str = "",
     settings: Settings = None,
 ):
     """Declare a descriptor: a JAX function from a `search.Motion` to one number."""
+    refuse_empty_axis(low, high, scale)
     axis = Axis(low=low, high=high, scale=scale)
     return _declared("descriptor", name, settings, title=title, unit=unit, axis=axis)
 
@@ -130,14 +146,35 @@ def encoding(
     returns the control of joints (time, joint) and of edges (time, edge), from −1 to 1.
     """
     if genes + per_joint + per_edge < 1:
-        raise ValueError(f"`genes` of {name!r} must be at least 1, or those per joint or edge")
+        raise InvalidField(
+            "genes", f"of {name!r} must be at least 1, or those per joint or edge"
+        )
     sizes = {"genes": genes, "per_joint": per_joint, "per_edge": per_edge}
     return _declared("encoding", name, settings, title=title, sizes=sizes)
 
 
+def emitter(
+    name: str,
+    *,
+    title: str,
+    varies: Iterable[Genes] = ("numbers",),
+    learns: Learns = "nothing",
+    gradients: int = 0,
+    settings: Settings = None,
+):
+    """Declare an emitter: a function from a `search.emitters.Problem` to a `search.Emitter`.
+
+    One that learns nothing is a dataclass with `slots` and has no state. One that needs
+    `gradients` is a `search.emitters.Learner`.
+    """
+    emits = Emits(varies=tuple(varies), learns=learns, gradients=gradients)
+    return _declared("emitter", name, settings, title=title, emits=emits)
+
+
 def _declared(kind: Kind, name: str, settings: Settings, **fields: Any) -> Callable[[F], F]:
     if not re.fullmatch(NAME, name):
-        raise ValueError(f"`name` must be of a-z, 0-9 and _, got {name!r}")
+        raise InvalidField("name", f"must be of a-z, 0-9 and _, got {name!r}")
+    # A form is made of the defaults, and a misspelt setting must not be ignored.
     if settings is not None:
         _refuse_unfit(name, settings)
 
@@ -152,15 +189,22 @@ def _declared(kind: Kind, name: str, settings: Settings, **fields: Any) -> Calla
 def _refuse_unfit(name: str, settings: type[BaseModel]) -> None:
     """Raise `ValueError` unless settings refuse unknown fields and have all defaults."""
     if not issubclass(settings, BaseModel) or settings.model_config.get("extra") != "forbid":
-        raise ValueError(f"`settings` of {name!r} must be a `microcosmos.spec.Part`")
+        raise InvalidField("settings", f"of {name!r} must be a `microcosmos.spec.Part`")
     needed = [field for field, one in settings.model_fields.items() if one.is_required()]
     if needed:
-        raise ValueError(
-            f"`settings` of {name!r} must all have defaults, got none for {', '.join(needed)}"
+        raise InvalidField(
+            "settings", f"of {name!r} must all have defaults, got none for {', '.join(needed)}"
         )
 
 
-ARGUMENTS = {"fitness": 1, "descriptor": 1, "body": 0, "gait": 0, "encoding": 2}
+ARGUMENTS = {
+    "fitness": 1,
+    "descriptor": 1,
+    "body": 0,
+    "gait": 0,
+    "encoding": 2,
+    "emitter": 1,
+}
 """Number of arguments of each kind of function, without settings."""
 
 

@@ -3,7 +3,8 @@
 import importlib.util
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from importlib.metadata import EntryPoint, entry_points
@@ -34,33 +35,42 @@ def load(path: Path | str) -> tuple[Declaration, ...]:
     """
     file = Path(path).resolve()
     if file.suffix != ".py" or not file.is_file():
-        there = "" if file.exists() else ", which is not there"
-        raise ValueError(f"a module must be a Python file (.py), got {path}{there}")
+        reason = "" if file.exists() else ", which is not there"
+        raise ValueError(f"a module must be a Python file (.py), got {path}{reason}")
     # Read once, so that the hash is that of the code that runs.
     source = file.read_bytes()
-    module = _run(path, file, source)
-    return _register(module, file.stem, sha256(source).hexdigest())
-
-
-def _run(path: Path | str, file: Path, source: bytes) -> ModuleType:
     name = f"microcosmos_plugin_{file.stem}"
-    found = importlib.util.spec_from_file_location(name, file)
-    assert found is not None
-    module = importlib.util.module_from_spec(found)
     before = sys.modules.get(name)
-    sys.modules[name] = module  # Annotations of its classes are looked up there.
     try:
-        exec(compile(source, file, "exec", dont_inherit=True), vars(module))
-    except BaseException as error:
+        module = _run(name, file, source)
+        return _register(module, file.stem, sha256(source).hexdigest())
+    except BaseException:
+        # A module that fails must leave the version before it in place.
         if before is None:
-            del sys.modules[name]
+            sys.modules.pop(name, None)
         else:
             sys.modules[name] = before
-        if isinstance(error, KeyboardInterrupt):
-            raise
-        where = registry.line_suffix(error, str(file))
-        raise ValueError(f"{path}{where} fails with {type(error).__name__}: {error}") from error
+        raise
+
+
+def _run(name: str, file: Path, source: bytes) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, file)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # Annotations of its classes are looked up there.
+    with _naming(str(file)):
+        exec(compile(source, file, "exec", dont_inherit=True), vars(module))
     return module
+
+
+@contextmanager
+def _naming(file: str) -> Iterator[None]:
+    """Turn whatever a module's own code raises into a `ValueError` with its place."""
+    try:
+        yield
+    except (Exception, SystemExit) as error:
+        where = registry.line_suffix(error, file)
+        raise ValueError(f"{file}{where} fails with {registry.told(error)}") from error
 
 
 def _register(module: ModuleType, namespace: str, source: str) -> tuple[Declaration, ...]:
@@ -70,14 +80,15 @@ def _register(module: ModuleType, namespace: str, source: str) -> tuple[Declarat
     other = registry.location_of(namespace)
     if other not in (None, file):
         raise ValueError(f"two modules are called {namespace!r}: {other} and {file}")
-    found = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
-    if not found:
+    with _naming(file):  # Settings and their defaults are its own code too.
+        plugins = [_plugin(*one, f"{namespace}.", source, file) for one in _declared(module)]
+    if not plugins:
         raise ValueError(f"{file} declares nothing: it needs a @plugins.fitness or another")
-    names = [one.declaration.name for one in found]
+    names = [one.declaration.name for one in plugins]
     if twice := [name for name in names if names.count(name) > 1]:
         raise ValueError(f"{file} declares {twice[0]!r} more than once")
-    registry.replace(namespace, found)
-    return tuple(one.declaration for one in found)
+    registry.replace(namespace, plugins)
+    return tuple(one.declaration for one in plugins)
 
 
 def load_all(paths: Iterable[Path | str]) -> tuple[FailedModule, ...]:
@@ -95,8 +106,8 @@ def load_all(paths: Iterable[Path | str]) -> tuple[FailedModule, ...]:
         try:
             load_one(source)
         except (Exception, SystemExit) as error:
-            kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-            failed.append(FailedModule(module, f"{kind}{error}"))
+            ours = type(error) is ValueError
+            failed.append(FailedModule(module, str(error) if ours else registry.told(error)))
     return tuple(failed)
 
 
@@ -119,10 +130,12 @@ def _load_entry(entry: EntryPoint) -> None:
 
 
 def _declared(module: ModuleType) -> list[tuple[Draft, Any]]:
-    found = [
+    marked = [
         one for one in vars(module).values() if isinstance(getattr(one, MARK, None), Draft)
     ]
-    defined = [one for one in dict.fromkeys(found) if one.__module__ == module.__name__]
+    # A module may import the plug-ins of another, which has them already.
+    once = {id(one): one for one in marked}.values()  # Not all can be hashed.
+    defined = [one for one in once if one.__module__ == module.__name__]
     return [(getattr(one, MARK), one) for one in defined]
 
 

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from pydantic import BaseModel, ValidationError
 
+from ..invalid import InvalidField, invalid_field
 from .declaration import Declaration
 
 HELP = "see docs/plugins.md"
@@ -37,8 +38,8 @@ class Plugin:
             return self.function(*given, *chosen)
         except Exception as error:
             place = f"{self.location}{line_suffix(error, self.location)}"
-            text = f"failed with {type(error).__name__}: {error}"
-            raise Broken(f"{self.declaration.name} ({place}) {text}") from error
+            text = f"{self.declaration.name} ({place}) failed with {told(error)}"
+            raise Broken(text) from error
 
 
 class Catalogue(Protocol):
@@ -63,6 +64,17 @@ def line_suffix(error: BaseException, file: str) -> str:
     return f", line {lines[-1]}" if lines else ""
 
 
+def told(error: BaseException) -> str:
+    """Return the class of an error and its text, also if it has none."""
+    try:
+        fields = error.errors(include_url=False) if isinstance(error, ValidationError) else ()
+        wrong = [invalid_field(one, ".".join(map(str, one["loc"]))) for one in fields]
+        text = "; ".join(map(str, wrong)) or str(error)
+    except Exception:  # The module may have defined its text too.
+        text = "an error without a text"
+    return f"{type(error).__name__}: {text}"
+
+
 _plugins: dict[tuple[str, str], Plugin] = {}
 
 
@@ -70,22 +82,21 @@ class Loaded:
     """The plug-ins of this process: at most one version per name."""
 
     def versions(self, kind: str, name: str) -> Sequence[Declaration]:
-        found = _plugins.get((kind, name))
-        return [found.declaration] if found else []
+        plugin = _plugins.get((kind, name))
+        return [plugin.declaration] if plugin else []
 
     def settings(self, declared: Declaration, given: Mapping[str, Any]) -> dict[str, Any]:
         model = _plugins[declared.kind, declared.name].model
         if model is None:
             if given:
-                raise ValueError(f"`plugin.settings` must be empty for {declared.name}")
+                raise InvalidField("plugin.settings", f"must be empty for {declared.name}")
             return {}
         try:
             return model.model_validate(dict(given)).model_dump(mode="json")
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             place = ".".join(map(str, ("plugin.settings", *first["loc"])))
-            came = "" if "got" in first["msg"] else f"; got {first['input']!r:.80}"
-            raise ValueError(f"`{place}` needs {first['msg']}{came}") from error
+            raise invalid_field(first, place) from error
 
     def explain_unknown(self, kind: str, name: str) -> str:
         known = [name for one, name in _plugins if one == kind]
@@ -103,18 +114,18 @@ def loaded() -> tuple[Plugin, ...]:
 
 def find(kinds: Iterable[str], name: str, source: str) -> Plugin:
     """Return a version of a plug-in; raise `Missing` where it is not loaded."""
-    found = next((_plugins[kind, name] for kind in kinds if (kind, name) in _plugins), None)
-    if found is None:
+    plugin = next((_plugins[kind, name] for kind in kinds if (kind, name) in _plugins), None)
+    if plugin is None:
         raise Missing(
             f"{name} (version {source[:12]}) is not loaded here: give its module with "
             f"--module, {HELP}"
         )
-    if found.declaration.source != source:
+    if plugin.declaration.source != source:
         raise Missing(
             f"{name} must be of version {source[:12]}, got version "
-            f"{found.declaration.source[:12]}: {found.location} has changed"
+            f"{plugin.declaration.source[:12]}: {plugin.location} has changed"
         )
-    return found
+    return plugin
 
 
 def replace(namespace: str, plugins: Iterable[Plugin]) -> None:

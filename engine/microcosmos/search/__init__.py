@@ -1,7 +1,7 @@
 """Search: evaluation by blocks, variation, and insertion into an archive."""
 
-from . import cvt, emitters, folding, gradients, reevaluation, screening
-from .ask_tell import Found, Search
+from . import cvt, disturbance, emitters, folding, gradients, loop, parts, screening, state_file
+from .ask_tell import ListedElites, Networks, Search, Space, Vectors
 from .blocks import (
     Devices,
     LocalDevices,
@@ -34,19 +34,21 @@ from .containers import (
     refreshed,
     with_cells,
 )
-from .crossing import crossing
 from .emitters import NO_PARENT, OPERATORS, Children, Emitter, Outcome
 from .evaluation import (
     STATUSES,
+    STROKE_MEASURES,
+    Conditions,
     Evaluation,
     evaluate,
+    in_conditions,
     in_trials,
     judged,
     motion_of,
     poses_of,
+    swim,
 )
-from .gradient_report import GradientReport, report_gradient
-from .gradients import Slopes, slopes
+from .gradients import GradientReport, Slopes, report_gradient, slopes
 from .inputs import Inputs, NotCovered, inputs
 from .insertion import (
     Elites,
@@ -58,7 +60,5 @@ from .insertion import (
 )
 from .measures import MEASURES, Measure, Motion, motion, observe
 from .simulation import drive, shift_energy, simulate, turned
-from .spaces import Networks, Space, Vectors
-from .strokes import STROKE_MEASURES, Conditions, in_conditions, swim
 from .task import Actuator, Goal, Task
-from .window import Poses
+from .window import Poses, crossing

@@ -32,7 +32,7 @@ def mapped(function: Callable, block: PyTree[Array]) -> Any:
     return jax.vmap(function)(block)
 
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 
 class Stopped(Exception):
@@ -44,25 +44,29 @@ def never() -> bool:
 
 
 def evaluate_blocks(
-    program: Callable[[PyTree], Found],
+    program: Callable[[PyTree], Result],
     items: PyTree[np.ndarray],
     *,
     block: int,
     stop: Callable[[], bool] = never,
-) -> Found:
+) -> Result:
     """Evaluate networks (or other items) in NumPy arrays whose first axis counts them.
 
     The last block is padded with its first item. Each device has one block in flight. Raises
     `Stopped` if `stop` is true before a block.
     """
     devices = jax.local_devices()
-    in_flight: deque[Found] = deque()
-    finished: list[Found] = []
+    in_flight: deque[Result] = deque()
+    finished: list[Result] = []
     for number, part in enumerate(blocks_of(items, block)):
         if stop():
             raise Stopped
+        # JAX does not wait for results. One block at a time for each device keeps to the memory
+        # that `spec.estimate` counts, and a stop acts between blocks.
         if len(in_flight) == len(devices):
             finished.append(jax.device_get(in_flight.popleft()))
+        # One program for each device, not one that is sharded over all: that changed bits.
+        # Files of one and two devices are compared in tests/engine/experiments/test_devices.py.
         in_flight.append(program(jax.device_put(part, devices[number % len(devices)])))
     finished += [jax.device_get(one) for one in in_flight]
     return joined(finished, items)
@@ -73,14 +77,16 @@ def blocks_of(items: PyTree[np.ndarray], block: int) -> Iterator[PyTree[np.ndarr
     count = _count(items)
     for start in range(0, count, block):
         rows = np.arange(start, start + block)
+        # A program of another shape would round differently, so the last block has as many
+        # rows.
         rows = np.where(rows < count, rows, start)
         yield jax.tree.map(lambda x, rows=rows: x[rows], items)
 
 
-def joined(found: Sequence[Found], items: PyTree[np.ndarray]) -> Found:
+def joined(results: Sequence[Result], items: PyTree[np.ndarray]) -> Result:
     """Return the results of the items from those of their blocks."""
     count = _count(items)
-    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *found)
+    return jax.tree.map(lambda *parts: np.concatenate(parts)[:count], *results)
 
 
 def _count(items: PyTree[np.ndarray]) -> int:
@@ -88,16 +94,16 @@ def _count(items: PyTree[np.ndarray]) -> int:
 
 
 class Devices(Protocol):
-    """What evaluates the blocks of a run: this process's devices, or those of many hosts."""
+    """The devices that evaluate the blocks of a run: this process's, or those of many hosts."""
 
     def evaluate(
         self,
-        program: Callable[[PyTree], Found],
+        program: Callable[[PyTree], Result],
         items: PyTree[np.ndarray],
         *,
         block: int,
         stop: Callable[[], bool] = never,
-    ) -> Found:
+    ) -> Result:
         """Evaluate items as `evaluate_blocks` does, to the same bits."""
         ...
 

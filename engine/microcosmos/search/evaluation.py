@@ -1,4 +1,4 @@
-"""Evaluation of one creature: from its genome to fitness, descriptors and measures."""
+"""Evaluation of one creature, from its genome or stroke to fitness, measures and status."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -7,27 +7,26 @@ from typing import Any, TypeVar
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jaxtyping import Array, Bool, Float, Int, PyTree
 
 from .. import units
+from ..filaments import Rest
 from ..genomes import Drive, Genotype
-from ..naming import FORMS
-from ..world import Measures, State, World, centre, flow, grown_nodes
-from .crossing import crossing
-from .kinematics import kinematics
+from ..measures import FORMS
+from ..world import Limits, Measures, State, World, centre, flow, grown_nodes
 from .measures import (
     MEASURES,
+    MOTION,
     advance,
     cost_of_transport,
+    kinematics,
     motion,
-    motion_for_plugins,
+    recorded_motion,
     swimming,
 )
 from .simulation import clock_of, drive, is_native, shift_energy, simulate, strokes
-from .summary import summarise
 from .task import Task
-from .window import Poses, poses, window
+from .window import Poses, crossing, poses, summarise, window
 
 STATUSES = (
     "ok",
@@ -61,17 +60,32 @@ def evaluate(task: Task, genotype: Genotype) -> Evaluation:
     Returns the mean fitness and measures; `trial_spread` is the standard deviation of fitness.
     The largest values of `FEASIBLE` count, and the first trial's poses are kept.
     """
-    if task.trials == 1:
-        return evaluate_drive(task, genotype, drive(task, genotype))
+    return over_trials(task, lambda one: evaluate_drive(one, genotype, drive(one, genotype)))
 
-    found = in_trials(task, lambda one: evaluate_drive(one, genotype, drive(one, genotype)))
-    measures = jnp.mean(found.measures, 0)
+
+def over_trials(task: Task, evaluation: Callable[[Task], Evaluation]) -> Evaluation:
+    """Return the evaluation of a creature from those in the task of every trial."""
+    if task.trials == 1:
+        return evaluation(task)
+    trials = in_trials(task, evaluation)
+    measures = _measures(trials)
+    measures = measures.at[MEASURES.index("trial_spread")].set(jnp.std(trials.fitness, ddof=1))
+    return _combined(trials, measures)
+
+
+def _measures(several: Evaluation) -> Float[Array, "measure"]:
+    """Return the means of measures over several simulations, of `FEASIBLE` the largest."""
+    measures = jnp.mean(several.measures, 0)
+    # A mean could hide the one simulation in which limits acted.
     for name, _ in FEASIBLE.values():
         at = MEASURES.index(name)
-        measures = measures.at[at].set(jnp.max(found.measures[:, at]))
-    measures = measures.at[MEASURES.index("trial_spread")].set(jnp.std(found.fitness, ddof=1))
-    first = jax.tree.map(lambda x: x[0], found.poses)
-    return Evaluation(jnp.mean(found.fitness), measures, jnp.max(found.status), first)
+        measures = measures.at[at].set(jnp.max(several.measures[:, at]))
+    return measures
+
+
+def _combined(several: Evaluation, measures: Float[Array, "measure"]) -> Evaluation:
+    first = jax.tree.map(lambda x: x[0], several.poses)
+    return Evaluation(jnp.mean(several.fitness), measures, jnp.max(several.status), first)
 
 
 Result = TypeVar("Result")
@@ -89,33 +103,36 @@ def trial(task: Task, number: Int[Array, ""]) -> Task:
     dtype = task.start.positions.dtype
     number = number.astype(dtype)
     phase = 2 * jnp.pi * number / task.trials
+    if task.phase is not None:
+        phase = phase + task.phase
     return replace(task, phase=phase, turn=jnp.pi / 4 * number, trials=1)
 
 
 def evaluate_drive(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
-    """Simulate and measure a developed genotype; return means over all placements."""
+    """Simulate and measure a developed genotype in all placements, as in trials."""
     if task.placements is None:
         return _evaluate(task, genotype, driven)
-    found = jax.lax.map(
+    placed = jax.lax.map(
         lambda shift: _evaluate(task, genotype, shift_energy(driven, shift)), task.placements
     )
-    means = jnp.mean(found.fitness), jnp.mean(found.measures, 0)
-    return Evaluation(*means, jnp.max(found.status), jax.tree.map(lambda x: x[0], found.poses))
+    return _combined(placed, _measures(placed))
 
 
 def _evaluate(task: Task, genotype: Genotype, driven: Drive) -> Evaluation:
     if task.encoding is None:
         raise ValueError("`task.encoding` must say what the genotype means; got None.")
     end, observed = simulate(driven)
-    values, shown, valid = measured(task, driven, end, observed)
-    values["crossing"] = crossing(shown, driven.start.positions)
+    values, poses_seen, valid = measured(task, driven, end, observed)
+    values["crossing"] = crossing(poses_seen, driven.start.positions)
     values["hidden_nodes"], values["connections"] = task.encoding.size(genotype)
     values |= form_of(task, driven)
     dtype = observed.centre.dtype
     measures = jnp.stack([values[name].astype(dtype) for name in task.measures])
+    # Bounded outputs can hide that a gene is not finite
+    # (tests/engine/search/test_finite_genes.py).
     finite = all_finite(measures) & all_finite(genotype)
     valid = jnp.where(finite, valid, STATUSES.index("non-finite"))
-    return Evaluation(fitness_of(task, values).astype(dtype), measures, valid, shown)
+    return Evaluation(fitness_of(task, values).astype(dtype), measures, valid, poses_seen)
 
 
 def all_finite(tree: PyTree) -> Bool[Array, ""]:
@@ -132,11 +149,16 @@ def measured(
         values = motion_of(task, driven, end, observed)
         valid = status(driven.world, end, values["mach"])
         return values, poses_of(task, driven, observed), valid
+    # In JAX measures and poses took 1.2 ms of the 13.1 ms of a creature of `standard`, here 0.2
+    # ms, and the program compiles in 2.0 s instead of 7.7 s (docs/physics.md).
     world, start, clock = driven.world, driven.start, clock_of(driven, len(observed.power))
     length = length_of(task, driven)
-    values, shown, valid = summarise(world, start, end, observed, clock, task.period, length)
+    values, poses_seen, valid = summarise(
+        world, start, end, observed, clock, task.period, length
+    )
+    # The kernel knows no trials, but every evaluation has the same columns.
     values["trial_spread"] = jnp.zeros_like(values["speed"])
-    return with_plugins(task, driven, end, observed, values), shown, valid
+    return with_named(task, driven, end, observed, values), poses_seen, valid
 
 
 def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
@@ -151,17 +173,17 @@ def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict
     )
     values |= kinematics(driven.world, observed, window(done), length)
     values["trial_spread"] = jnp.zeros_like(values["speed"])
-    return with_plugins(task, driven, end, observed, values)
+    return with_named(task, driven, end, observed, values)
 
 
-def with_plugins(
+def with_named(
     task: Task, driven: Drive, end: State, observed: Measures, values: dict[str, Any]
 ) -> dict[str, Any]:
-    """Add the measures of plug-ins to the usual ones."""
-    if not task.plugin_measures:
+    """Add the measures that the task names to the usual ones."""
+    if not task.named_measures:
         return values
-    whole = motion_for_plugins(driven.world, driven.start, end, observed, values)
-    return values | {measure.name: measure.of(whole) for measure in task.plugin_measures}
+    whole = recorded_motion(driven.world, driven.start, end, observed, values, task.copies)
+    return values | {measure.name: measure.of(whole) for measure in task.named_measures}
 
 
 def length_of(task: Task, driven: Drive) -> Scalar | float:
@@ -211,12 +233,14 @@ FEASIBLE = {
 
 
 def judged(evaluation: Evaluation) -> Evaluation:
-    """Return evaluations in NumPy with a status where limits acted, the flow was too fast, a
-    body pushed itself, or filaments crossed; the first reason counts."""
-    measures, status = np.asarray(evaluation.measures), np.array(evaluation.status)
+    """Return evaluations, in NumPy or JAX, with a status where limits acted, the flow was too
+    fast, a body pushed itself, or filaments crossed; the first reason counts."""
+    status = evaluation.status
     for reason, (name, most) in FEASIBLE.items():
-        beyond = measures[:, MEASURES.index(name)] > most
-        status[(status == 0) & beyond] = STATUSES.index(reason)
+        beyond = evaluation.measures[:, MEASURES.index(name)] > most
+        # A product, which arrays of both libraries know: QDax judges within its program.
+        judged_so = ((status == 0) & beyond).astype(status.dtype)
+        status = status + judged_so * STATUSES.index(reason)
     return eqx.tree_at(lambda one: one.status, evaluation, status)
 
 
@@ -228,3 +252,43 @@ def status(world: World, end: State, mach: Scalar) -> Int[Array, ""]:
     fastest = jnp.maximum(mach, units.mach(last))
     # The expansion in Mach number is invalid from the lattice's speed of sound.
     return jnp.where(jnp.isfinite(fastest), jnp.where(fastest < 1, 0, 2), 1)
+
+
+STROKE_MEASURES = (
+    *MOTION,
+    "energy",
+    "mach",
+    "limited",
+    "reynolds",
+    "cycle_x",
+    "cycle_y",
+    "impulse",
+)
+"""Measures of every stroke, in this order; units in `docs/formats.md`."""
+
+
+class Conditions(eqx.Module):
+    """The conditions of one point of a sweep."""
+
+    viscosity: Float[Array, "*block"]
+    limits: Limits
+
+
+def in_conditions(task: Task, conditions: Conditions) -> Task:
+    """Return the task of one body that is simulated once, in the conditions of a point."""
+    world = replace(task.world, viscosity=conditions.viscosity, limits=conditions.limits)
+    return replace(task, world=world, trials=1, placements=None, places=None)
+
+
+def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluation:
+    """Carry out a stroke under its conditions and measure its last cycle."""
+    task = in_conditions(task, conditions)
+    driven = drive(task, rest)
+    end, observed = simulate(driven)
+    values, poses, valid = measured(task, driven, end, observed)
+    whole = len(observed.power) > period
+    before = observed.centre[-1 - period] if whole else poses.path[0]
+    values["cycle_x"], values["cycle_y"] = observed.centre[-1] - before
+    measures = jnp.stack([values[name] for name in STROKE_MEASURES])
+    valid = jnp.where(all_finite(measures), valid, STATUSES.index("non-finite"))
+    return Evaluation(fitness_of(task, values), measures, valid)

@@ -81,8 +81,8 @@ def loss(descent: Descent, genes: Float[Array, "gene"], picture: Plane) -> Float
     """Return the mean squared difference between density and picture at the end."""
     driven = drive(descent.task, Vector(genes), differentiable=True)
     end, _ = simulate(driven, lambda state, measures: None, segment=descent.segment)
-    found = fields.splat(end.positions, descent.task.world.size, descent.width)
-    return jnp.mean((descent.density(found) - picture) ** 2)
+    density = fields.splat(end.positions, descent.task.world.size, descent.width)
+    return jnp.mean((descent.density(density) - picture) ** 2)
 
 
 def initial_fold(descent: Descent, picture: Plane) -> Fold:
@@ -99,19 +99,20 @@ def update(descent: Descent, fold: Fold) -> tuple[Fold, Float[Array, ""]]:
     If loss or slope are not finite, the loss is NaN, and the next step starts from the
     best genes at half the rate.
     """
-    found, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
-    finite = jnp.isfinite(found) & jnp.all(jnp.isfinite(slope))
-    better = finite & (found < fold.least)
+    value, slope = jax.value_and_grad(partial(loss, descent))(fold.genes, fold.picture)
+    finite = jnp.isfinite(value) & jnp.all(jnp.isfinite(slope))
+    better = finite & (value < fold.least)
     best = jnp.where(better, fold.genes, fold.best)
     rate = descent.rate * fold.rate_share
+    # A number that is not finite would stay in the moments of Adam.
     change, moved = descend(fold.optimiser, jnp.where(finite, slope, 0.0), rate)
     genes = jnp.where(finite, fold.genes + change, best)
     optimiser = jax.tree.map(
         lambda new, fresh: jnp.where(finite, new, fresh), moved, begin(best)
     )
-    least = jnp.where(better, found, fold.least)
+    least = jnp.where(better, value, fold.least)
     rate_share = jnp.where(finite, 1.0, 0.5) * fold.rate_share
-    loss_before = jnp.where(finite, found, jnp.nan)
+    loss_before = jnp.where(finite, value, jnp.nan)
     return Fold(genes, optimiser, best, least, rate_share, fold.picture), loss_before
 
 

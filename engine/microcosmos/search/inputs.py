@@ -10,11 +10,10 @@ from jaxtyping import Array, Float, Int
 
 from ..filaments import Rest
 from ..world import native
-from .crossing import whole_units
 from .evaluation import form_of, in_trials, length_of
-from .school import schooled
-from .simulation import clock_of, drive, given_of, shift_energy, turned
+from .simulation import clock_of, drive, given_of, schooled, shift_energy, turned
 from .task import Actuator, Task
+from .window import whole_units
 
 Numbers = tuple[tuple[str, int], ...]
 
@@ -36,7 +35,7 @@ class Inputs(eqx.Module):
     develop: tuple[Array, ...]
     """Empty for a creature whose rest shapes are given or follow what it senses."""
     rollout: tuple[Array, ...]
-    """With a development, rest shapes hold nothing: they are its results."""
+    """Rest shapes are empty with a development, which computes them."""
     clock: Float[Array, "*several time"]
     """The controller's time at the end of each step; with a development it is a result."""
     scales: Float[Array, "*several 3"]

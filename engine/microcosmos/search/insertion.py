@@ -91,12 +91,12 @@ def insert_into_cells(
     count, rows = archive.occupied.shape[0], candidates.occupied.shape[0]
     able = sound(candidates, cells.axes)
     cell = jnp.where(able, cells.of(candidates.measures), count)
-    there = jnp.minimum(cell, count - 1)
-    fresh = able & ~archive.occupied[there]
-    entered = _winners(archive, candidates, cell, there, able)
+    home = jnp.minimum(cell, count - 1)
+    fresh = able & ~archive.occupied[home]
+    entered = _winners(archive, candidates, cell, home, able)
     # Rows that do not enter get distinct indices beyond the archive, which are dropped.
     place = jnp.where(entered, cell, count + jnp.arange(rows))
-    before = jnp.where(fresh, 0.0, archive.fitness[there])
+    before = jnp.where(fresh, 0.0, archive.fitness[home])
     improvement = jnp.where(able, candidates.fitness - before, -jnp.inf)
     archive = jax.tree.map(
         lambda old, new: old.at[place].set(new, mode="drop", unique_indices=True),
@@ -108,6 +108,8 @@ def insert_into_cells(
 
 def sound(candidates: Elites, axes: tuple[Axis, ...]) -> Bool[Array, "row"]:
     """Return the candidates that may enter: feasible, with finite fitness and descriptors."""
+    # A NaN would win every maximum of its cell. QDax loses a better offspring of the same batch
+    # that way; tests/engine/search/test_insertion.py, "odd numbers", compares.
     able = candidates.occupied & jnp.isfinite(candidates.fitness)
     descriptors = jnp.stack([candidates.measures[:, axis.measure] for axis in axes], 1)
     return able & jnp.all(jnp.isfinite(descriptors), 1)
@@ -137,8 +139,8 @@ def height(fitness: Float[Array, "row"]) -> Int[Array, "row"]:
 
 def digest(genotypes: Genotype) -> UInt32[Array, "row 2"]:
     """Return 64 bits that depend on every used gene, −0 counting as 0."""
-    found = words(genotypes)
-    return jnp.stack([_mix(found, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
+    genes = words(genotypes)
+    return jnp.stack([_mix(genes, salt) for salt in (0x9E3779B9, 0x85EBCA6B)], 1)
 
 
 def _mix(words: UInt32[Array, "row word"], salt: int) -> UInt32[Array, "row"]:
@@ -155,7 +157,7 @@ def _winners(
     archive: Elites,
     candidates: Elites,
     cell: Int[Array, "row"],
-    there: Int[Array, "row"],
+    home: Int[Array, "row"],
     able: Bool[Array, "row"],
 ) -> Bool[Array, "row"]:
     """Return the candidates that rank above their cell's elite and its other candidates.
@@ -166,12 +168,13 @@ def _winners(
     elite = jnp.where(archive.occupied, height(archive.fitness), -MAX_INT)
     own = height(candidates.fitness)
     best = elite.at[cell].max(own, mode="drop")
-    leads = able & (own == best[there])
+    leads = able & (own == best[home])
     leaders = jnp.zeros(count, jnp.int32).at[cell].add(leads.astype(jnp.int32), mode="drop")
-    ties = leads & ((leaders[there] > 1) | (own == elite[there]))
+    ties = leads & ((leaders[home] > 1) | (own == elite[home]))
+    # Ties are rare, and a digest reads every gene.
     return jax.lax.cond(
         jnp.any(ties),
-        lambda: _untied(archive, candidates, cell, there, leads, own == elite[there]),
+        lambda: _untied(archive, candidates, cell, home, leads, own == elite[home]),
         lambda: leads,
     )
 
@@ -180,7 +183,7 @@ def _untied(
     archive: Elites,
     candidates: Elites,
     cell: Int[Array, "row"],
-    there: Int[Array, "row"],
+    home: Int[Array, "row"],
     leads: Bool[Array, "row"],
     level: Bool[Array, "row"],
 ) -> Bool[Array, "row"]:
@@ -189,18 +192,18 @@ def _untied(
     `level` marks rows whose cell's elite is equally fit.
     """
     count = archive.occupied.shape[0]
-    incumbents = jax.tree.map(lambda x: x[there], archive)
+    incumbents = jax.tree.map(lambda x: x[home], archive)
     rivals = level & leads
     for mine, theirs in zip(_rank(candidates), _rank(incumbents), strict=True):
         least = jnp.full(count, MAX_INT)
         least = least.at[jnp.where(leads, cell, count)].min(mine, mode="drop")
         least = least.at[jnp.where(rivals, cell, count)].min(theirs, mode="drop")
-        leads &= mine == least[there]
-        rivals &= theirs == least[there]
+        leads &= mine == least[home]
+        rivals &= theirs == least[home]
     # A row that equals the elite in every key is that elite. The first of equal rows wins.
     row = jnp.arange(len(leads), dtype=jnp.int32)
     first = jnp.full(count, MAX_INT).at[jnp.where(leads, cell, count)].min(row, mode="drop")
-    return leads & ~rivals & (row == first[there])
+    return leads & ~rivals & (row == first[home])
 
 
 def _rank(elites: Elites) -> tuple[Int[Array, "row"], ...]:

@@ -1,27 +1,165 @@
-"""Measures of a creature's motion; names, units and axes are in `spec.measures`."""
+"""Measures of a creature's motion; `microcosmos.measures` is the table of all.
+
+Waves, beats, shape and heading are measured from the recorded poses, the others at every step.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any, get_args
+from typing import Any
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+import numpy as np
+from jaxtyping import Array, Bool, Float, Int
 
 from .. import units
+from ..archive.poses import FRAMES, STROKES
 from ..filaments import Rest
-from ..naming import MeasureName
-from ..world import Measures, State, World, centre, edges_there, joints_there, mean
+from ..measures import RECORDED as MEASURES
+from ..portable import product, root
+from ..world import Measures, State, World, centre, mean, present_edges, present_joints
+from .window import Window
 
-MEASURES: tuple[str, ...] = get_args(MeasureName)
-"""Measures of every elite, in this order; units in `docs/formats.md`."""
+Scalar = Float[Array, ""]
+
+_ANGLES = 2 * np.pi * np.outer(np.arange(1, FRAMES // 2 + 1), np.arange(FRAMES)) / FRAMES
+TINY = 1e-20
+
+
+def kinematics(
+    world: World, observed: Measures, window: Window, length: Scalar | float
+) -> dict[str, Scalar]:
+    """Measure the poses of a window; `length` is the body's, in cells."""
+    at = window.places()
+    shapes, bends = observed.positions[at], observed.curvature[at]
+    moved = observed.centre[window.stop - 1] - observed.centre[jnp.maximum(window.start - 1, 0)]
+    beats, wave, direction = waves(bends, along(world))
+    heading, aspect = axis(shapes, moved, world.present)
+    spacing = _mean_edge(world, shapes[0])
+    strokes = window.strokes.astype(wave.dtype)
+    swung = excursion(shapes, moved, world.present)
+    distance = jnp.maximum(_portable_norm(moved), 1e-3 * length)
+    return {
+        "beats": beats * strokes / STROKES,
+        "wave_number": wave * length / spacing,
+        "wave_direction": direction,
+        "heading_angle": heading,
+        "aspect": aspect,
+        "strouhal": strokes * swung / distance,
+    }
+
+
+def along(world: World) -> Bool[Array, "pair"]:
+    """Return which joints are followed, along a filament, by the next one in order."""
+    joints = world.rods.joints
+    if joints is None or len(joints) < 2:
+        return jnp.zeros(max(0, len(world.rods.bend) - 1), bool)
+    next_to = joints[:-1, 1] == joints[1:, 0]
+    grown = present_edges(world)
+    if grown is None:
+        return next_to
+    kept = grown[joints[:, 0]] & grown[joints[:, 1]]
+    return next_to & kept[:-1] & kept[1:]
+
+
+def waves(
+    bends: Float[Array, "frame joint"], along: Bool[Array, "pair"]
+) -> tuple[Scalar, Scalar, Scalar]:
+    """Return beats a stroke, waves from one joint to the next, and their direction.
+
+    The curvature c(t, j) counts less its mean over time. Beats are the mean frequency of its
+    spectrum in time. At the strongest frequency, with the amplitudes a(j), the wave number is
+    k = 2 atan(|Δa| / 2|a|) over 2π, with differences and means of neighbouring joints, and the
+    direction is −Im(a* Δa) / (|a| |Δa|): 1 for a wave that travels from the first joint to the
+    last, −1 for the reverse, 0 for a standing wave.
+    """
+    change = bends - jnp.mean(bends, 0)[None]
+    cosine = product(jnp.asarray(np.cos(_ANGLES), bends.dtype), change)
+    sine = -product(jnp.asarray(np.sin(_ANGLES), bends.dtype), change)
+    power = jnp.sum(cosine * cosine + sine * sine, 1)
+    rates = jnp.arange(1.0, FRAMES // 2 + 1, dtype=bends.dtype) / STROKES
+    beats = jnp.sum(rates * power) / jnp.maximum(jnp.sum(power), TINY)
+    # The choice of a frequency has no derivative.
+    strongest = jnp.argmax(jax.lax.stop_gradient(power))
+    real, imaginary = cosine[strongest], sine[strongest]
+    size, step, turned = along_joints(real, imaginary, along)
+    moving = jnp.sum(power) > TINY
+    wave = 2 * jnp.arctan2(step, 2 * size) / (2 * jnp.pi)
+    zero = jnp.zeros_like(wave)
+    direction = -turned / (size * step)
+    return beats, jnp.where(moving, wave, zero), jnp.where(moving, direction, zero)
+
+
+def along_joints(
+    real: Float[Array, "joint"], imaginary: Float[Array, "joint"], along: Bool[Array, "pair"]
+) -> tuple[Scalar, Scalar, Scalar]:
+    """Return |a| and |Δa| of complex amplitudes a, and −|a| |Δa| times a wave's direction."""
+    middle = [jnp.where(along, (a[:-1] + a[1:]) / 2, 0.0) for a in (real, imaginary)]
+    change = [jnp.where(along, a[1:] - a[:-1], 0.0) for a in (real, imaginary)]
+    size, step = (root(jnp.sum(a * a + b * b) + TINY) for a, b in (middle, change))
+    return size, step, jnp.sum(middle[0] * change[1] - middle[1] * change[0])
+
+
+def axis(
+    shapes: Float[Array, "frame node 2"],
+    moved: Float[Array, "2"],
+    present: Bool[Array, "node"] | None,
+) -> tuple[Scalar, Scalar]:
+    """Return the angle from the body's long axis to its path, and its width over its length.
+
+    Both are of the second moments of its nodes about their mean, over all frames: 0 to π/2
+    rad, and 0 (a line) to 1 (round).
+    """
+    x, y = jnp.moveaxis(_centred(shapes, present), -1, 0)
+    xx, yy, xy = jnp.sum(x * x), jnp.sum(y * y), jnp.sum(x * y)
+    half = jnp.sqrt((xx - yy) ** 2 / 4 + xy * xy + TINY)
+    mean = (xx + yy) / 2
+    aspect = jnp.sqrt(jnp.maximum(mean - half, 0.0) / (mean + half) + TINY)
+    angle = jnp.arctan2(2 * xy, xx - yy + TINY) / 2
+    c, s = jnp.cos(angle), jnp.sin(angle)
+    ahead, aside = c * moved[0] + s * moved[1], c * moved[1] - s * moved[0]
+    return jnp.arctan2(jnp.abs(aside), jnp.abs(ahead) + TINY), aspect
+
+
+def excursion(
+    shapes: Float[Array, "frame node 2"],
+    moved: Float[Array, "2"],
+    present: Bool[Array, "node"] | None,
+) -> Scalar:
+    """Return the largest peak-to-peak excursion of a node across the body's path, in cells."""
+    x, y = jnp.moveaxis(_centred(shapes, present), -1, 0)
+    across = (moved[0] * y - moved[1] * x) / _portable_norm(moved)
+    return jnp.max(jnp.max(across, 0) - jnp.min(across, 0))
+
+
+def _centred(
+    shapes: Float[Array, "frame node 2"], present: Bool[Array, "node"] | None
+) -> Float[Array, "frame node 2"]:
+    """Return positions about their mean in each frame; 0 for nodes that are absent."""
+    if present is None:
+        return shapes - jnp.mean(shapes, 1, keepdims=True)
+    kept = present.astype(shapes.dtype)[None, :, None]
+    mean = jnp.sum(shapes * kept, 1, keepdims=True) / jnp.sum(kept)
+    return (shapes - mean) * kept
+
+
+def _mean_edge(world: World, positions: Float[Array, "node 2"]) -> Scalar:
+    edges, grown = world.rods.edges, present_edges(world)
+    lengths = _portable_norm(positions[edges[:, 1]] - positions[edges[:, 0]])
+    if grown is None:
+        return jnp.mean(lengths)
+    return jnp.sum(jnp.where(grown, lengths, 0.0)) / jnp.sum(grown)
+
+
+def _portable_norm(v: Float[Array, "*batch 2"]) -> Float[Array, "*batch"]:
+    return root(jnp.sum(v * v, -1) + 1e-24)
+
 
 MOTION = MEASURES[:6]
 """Measures of the motion alone."""
 
 Curvature = Float[Array, "time joint"]
-Scalar = Float[Array, ""]
 
 
 def observe(state: State, measures: Measures) -> Measures:
@@ -36,7 +174,7 @@ def motion(
     first, steps = centre(world, start), len(observed.node_speed)
     moved = jnp.diff(jnp.concatenate([first[None], observed.centre]), axis=0)
     displacement, path = _norm(observed.centre[-1] - first), jnp.sum(_norm(moved))
-    edges, joints = edges_there(world), joints_there(world)
+    edges, joints = present_edges(world), present_joints(world)
     power = jnp.mean(observed.power)
     nodes = len(start.positions) if world.present is None else jnp.sum(world.present)
     heading = jnp.concatenate([mean(start.angles, edges)[None], observed.heading])
@@ -96,6 +234,8 @@ def _stroked(
     """Return the displacement over whole strokes after the first, their time in steps and
     their number, 0 below two strokes."""
     times = jnp.arange(1.0, len(path) + 1, dtype=path.dtype)
+    # The clock adds up rounding: a stroke that lacks a thousandth is complete. A count has no
+    # derivative.
     done = jax.lax.stop_gradient(jnp.floor(strokes[-1] + 1e-3))
     ends = jnp.stack([jnp.ones_like(done), jnp.maximum(done, 2.0)])
     moved = [jnp.diff(jnp.interp(ends, strokes, path[:, axis]))[0] for axis in (0, 1)]
@@ -139,21 +279,21 @@ def effort(rest: Float[Array, "time item"], kept: Bool[Array, "item"] | None = N
 
 
 def curvature(
-    found: Curvature, kept: Bool[Array, "joint"] | None = None
+    bends: Curvature, kept: Bool[Array, "joint"] | None = None
 ) -> tuple[Scalar, Scalar]:
     """Return mean and standard deviation of |curvature| over time and joints, 1/cells.
 
     Both are 0 without joints.
     """
-    if found.shape[1] == 0:
-        return jnp.zeros((), found.dtype), jnp.zeros((), found.dtype)
-    size = jnp.abs(found)
+    if bends.shape[1] == 0:
+        return jnp.zeros((), bends.dtype), jnp.zeros((), bends.dtype)
+    size = jnp.abs(bends)
     average = jnp.mean(mean(size.T, kept))
     squares = jnp.mean(mean((size.T - average) ** 2, kept))
     return average, jnp.sqrt(squares + 1e-24)
 
 
-def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scalar:
+def symmetry(bends: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scalar:
     """Correlate the joints' bending with its mirror along the body, −1 to 1.
 
     Σ c(t, j) c(t, J − 1 − j) / Σ c(t, j)², with the curvature c less its mean over time.
@@ -161,25 +301,27 @@ def symmetry(found: Curvature, kept: Bool[Array, "joint"] | None = None) -> Scal
     shapes; about 0: a wave runs along the body. Joints that are present count in their
     order, which is that along a filament.
     """
-    change = found - jnp.mean(found, 0)[None]
-    joints = found.shape[1]
+    change = bends - jnp.mean(bends, 0)[None]
+    joints = bends.shape[1]
     mirror = jnp.arange(joints)[::-1]
     if kept is not None:
         order, rank = jnp.argsort(~kept, stable=True), jnp.cumsum(kept) - 1
         mirror = order[jnp.mod(jnp.sum(kept) - 1 - rank, joints)]
-    product = change * change[:, mirror]
+    mirrored = change * change[:, mirror]
     square = change * change
     if kept is not None:
-        product = jnp.where(kept[None], product, 0.0)
-    return jnp.sum(product) / jnp.maximum(jnp.sum(square), 1e-20)
+        mirrored = jnp.where(kept[None], mirrored, 0.0)
+    return jnp.sum(mirrored) / jnp.maximum(jnp.sum(square), 1e-20)
 
 
 def efficiency(speed: Scalar, power: Scalar, viscosity: Scalar) -> Scalar:
     """Return ν U² / P: the power to drag a unit resistance over the power spent.
 
-    It is 0 where the total power is not positive.
+    It is 0 where the total power is not positive, and NaN where the power is.
     """
-    spent = power > 1e-20
+    # The divisor is chosen too: the branch that is not taken has a derivative, which must not
+    # be NaN.
+    spent = ~(power <= 1e-20)
     return jnp.where(spent, viscosity * speed**2 / jnp.where(spent, power, 1.0), 0.0)
 
 
@@ -202,31 +344,42 @@ class Motion(eqx.Module):
     """Mean speed of nodes, in cells a step."""
     power: Float[Array, "time"]
     """Power spent on the fluid."""
+    middle: Float[Array, "moment 2"]
+    """Position of the middle node, of those that have grown and in their order, in cells; of
+    the first of several copies."""
     start: Float[Array, "node 2"]
     """Positions of nodes at the start, in cells."""
     end: Float[Array, "node 2"]
     viscosity: Scalar
     measures: dict[str, Scalar]
-    """The usual measures, by the names of `spec.measures`."""
+    """The usual measures, by name."""
 
     def __getattr__(self, name: str) -> Any:
+        # Authors of plug-ins read this; the usual error names no field that there is.
         known = ", ".join(field.name for field in fields(type(self)))
         raise AttributeError(f"a motion has {known}, got {name!r}")
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of a plug-in, beside the usual ones."""
+    """A measure that a spec names, built in or of a plug-in, beside those of every motion."""
 
     name: str
     of: Callable[[Motion], Scalar]
 
 
-def motion_for_plugins(
-    world: World, start: State, end: State, observed: Measures, measures: dict[str, Any]
+def recorded_motion(
+    world: World,
+    start: State,
+    end: State,
+    observed: Measures,
+    measures: dict[str, Any],
+    copies: int,
 ) -> Motion:
-    """Return a simulation in the form that measures of plug-ins take."""
-    first = mean(start.angles, edges_there(world))
+    """Return a simulation in the form that named measures take."""
+    first = mean(start.angles, present_edges(world))
+    nodes = len(start.positions) // copies
+    node = middle_node(nodes, None if world.present is None else world.present[:nodes])
     return Motion(
         path=jnp.concatenate([centre(world, start)[None], observed.centre]),
         heading=jnp.concatenate([first[None], observed.heading]),
@@ -234,8 +387,17 @@ def motion_for_plugins(
         curvature=observed.curvature,
         node_speed=observed.node_speed,
         power=observed.power,
+        middle=jnp.concatenate([start.positions[node][None], observed.positions[:, node]]),
         start=start.positions,
         end=end.positions,
         viscosity=world.viscosity,
         measures=measures,
     )
+
+
+def middle_node(nodes: int, present: Bool[Array, "node"] | None) -> int | Int[Array, ""]:
+    """Return the number of the middle one among the nodes that have grown, in their order."""
+    if present is None:
+        return nodes // 2
+    # Absent nodes go behind the others, which keep their order.
+    return jnp.argsort(~present, stable=True)[jnp.sum(present) // 2]

@@ -1,11 +1,11 @@
-"""What creatures are evaluated in and for: a world, a body at its start, and a goal."""
+"""Tasks of creatures: a world, a body at its start, and a goal."""
 
 import equinox as eqx
 from jaxtyping import Array, Float, Int
 
 from ..filaments import Rest
 from ..genomes import Actuators, Encoding, Genotype
-from ..naming import FORMS
+from ..measures import FORMS
 from ..world import State, World
 from .measures import MEASURES, Measure
 
@@ -45,15 +45,20 @@ class Task(eqx.Module):
     """Shift of the energy, in cells, in each world that a creature is measured in; None: one
     world, unshifted."""
     form: tuple[float, ...] = eqx.field(static=True, default=(0.0,) * len(FORMS))
-    """Measures of the form of a body that does not grow."""
+    """Measures of the form of a body whose shape is not inherited."""
     actuators: Actuators | None = None
     """Bounds on what the controllers of genotypes command; None: none."""
     places: Float[Array, "copy 2"] | None = None
     """Places of copies of the creature about the start, in cells; None: it is alone."""
-    plugin_measures: tuple[Measure, ...] = eqx.field(static=True, default=())
-    """Measures of plug-ins, beside the usual ones."""
+    named_measures: tuple[Measure, ...] = eqx.field(static=True, default=())
+    """Measures that the spec names, built in or of plug-ins, beside the usual ones."""
+
+    @property
+    def copies(self) -> int:
+        """Return the number of creatures in the world."""
+        return 1 if self.places is None else len(self.places)
 
     @property
     def measures(self) -> tuple[str, ...]:
         """Names of the measures of every creature, in this order."""
-        return MEASURES + tuple(measure.name for measure in self.plugin_measures)
+        return MEASURES + tuple(measure.name for measure in self.named_measures)

@@ -1,8 +1,15 @@
-"""Addresses of sinks: `tensorboard:FOLDER`, `mlflow:URI`, `wandb:PROJECT`."""
+"""Addresses of sinks, records of runs in them, and messages to their processes."""
 
+import hashlib
+import json
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+from ..archive.file_names import stem
 
 KINDS = {
     "tensorboard": "a folder, as tensorboard:runs",
@@ -31,6 +38,7 @@ def parse(text: str) -> Address:
             f"a sink must be tensorboard:…, mlflow:… or wandb:… ({needed}); got "
             f"{text.partition('//')[0]!r}"
         )
+    # Addresses stand in logs and records (test_passwords_do_not_stand_in_addresses).
     if re.search(r"//[^/]*@", target):
         raise ValueError(
             "a sink must have no user and password in its address: MLflow reads them from "
@@ -42,3 +50,75 @@ def parse(text: str) -> Address:
 def parse_all(texts: Sequence[str]) -> tuple[Address, ...]:
     """Return addresses, each once."""
     return tuple(dict.fromkeys(parse(text) for text in texts if text.strip()))
+
+
+@dataclass(frozen=True)
+class Record:
+    """The identity and the spec of a run in a sink."""
+
+    id: str
+    """Equal for all attempts at one run; letters, digits, `-`, `_` and `.`."""
+    name: str
+    spec: dict[str, Any]
+    generation: int = 0
+    """The generation from which this attempt goes on."""
+
+    def header(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def of_file(path: Path, spec: Mapping[str, Any], generation: int) -> Record:
+    """Return the record of a run that `evolve` carries out into a file.
+
+    The same path and spec, whatever the number of generations, give the same `id`.
+    """
+    kept: dict[str, Any] = json.loads(json.dumps(spec))
+    kept.get("search", {}).pop("generations", None)
+    text = json.dumps([str(path.resolve()), kept], sort_keys=True)
+    name = stem(path)
+    short = re.sub(r"[^A-Za-z0-9_.-]", "-", name)[:40]
+    digest = hashlib.sha256(text.encode()).hexdigest()[:8]
+    return Record(f"{short}-{digest}", name, dict(spec), generation)
+
+
+class Refused(Exception):
+    """A sink has taken all values but some: the reasons by their names."""
+
+    def __init__(self, reasons: Mapping[str, str]):
+        self.reasons = dict(reasons)
+        super().__init__(self.reasons)
+
+
+LENGTHS = struct.Struct("<IQ")
+"""Bytes of the header, and of what follows it."""
+
+
+class Message(NamedTuple):
+    """`kind` is `report`, `archive`, `file` or `end`."""
+
+    header: dict[str, Any]
+    data: bytes = b""
+
+    @property
+    def kind(self) -> str:
+        return self.header["kind"]
+
+
+def send(stream: BinaryIO, message: Message) -> None:
+    """Write a message; it may block. Raises `OSError` if nobody reads."""
+    text = json.dumps(message.header).encode()
+    stream.write(LENGTHS.pack(len(text), len(message.data)) + text)
+    stream.write(message.data)
+    stream.flush()
+
+
+def receive(stream: BinaryIO) -> Message | None:
+    """Return the next message; None at the end of the stream, also within a message."""
+    head = stream.read(LENGTHS.size)
+    if len(head) < LENGTHS.size:
+        return None
+    header, data = LENGTHS.unpack(head)
+    text, content = stream.read(header), stream.read(data)
+    if len(text) < header or len(content) < data:
+        return None
+    return Message(json.loads(text), content)

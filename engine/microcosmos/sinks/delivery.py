@@ -7,19 +7,19 @@ fit into the queue is dropped and counted.
 import json
 import logging
 import math
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from queue import Empty, Full, Queue
-from threading import Lock, Thread
+from threading import Lock, Thread, Timer
 from typing import Any, BinaryIO, Self, cast
 
-from ..archive.report import Report
-from .address import Address
-from .messages import Message, send
-from .record import Record
+from ..archive.report import FIGURES, Report, curves_of
+from .address import Address, Message, Record, send
+from .process import LAST, LINGER
 
 log = logging.getLogger(__name__)
 
@@ -33,17 +33,27 @@ for `process.LINGER` seconds at most: killed, they might leave half a database b
 COMMAND = (sys.executable, "-m", "microcosmos.viz.sink")
 
 CURVES = ("qd_score", "coverage", "best", "mean", "evaluations", "infeasible")
+_WHOLE = {*CURVES, *(one.name for one in FIGURES)}
 
 
 def numbers(report: Report) -> dict[str, float]:
-    """Return the finite numbers of a report; `:` in a name becomes a group."""
-    found: dict[str, Any] = {name: getattr(report, name) for name in CURVES}
-    found |= report.summary or {}
+    """Return the finite numbers of a report that make curves; a dot in a name makes a group."""
+    values: dict[str, Any] = {name: getattr(report, name) for name in CURVES}
+    values |= curves_of(report.summary)
     return {
-        name.replace(": ", "/"): value
-        for name, value in found.items()
+        _grouped(name): value
+        for name, value in values.items()
         if isinstance(value, int | float) and math.isfinite(value)
     }
+
+
+def _grouped(name: str) -> str:
+    """Return the name of a curve with its group, which is the name of no other curve.
+
+    A folder of MLflow has a file for each curve, and a file cannot be a folder too.
+    """
+    head, dot, rest = name.partition(".")
+    return f"{head}{'_by' if dot and head in _WHOLE else ''}{dot}{rest}".replace(".", "/")
 
 
 _LINGERING: list[subprocess.Popen[bytes]] = []
@@ -85,6 +95,7 @@ class Sinks:
             self._offer(Message(header, data))
         until, feeds = time.monotonic() + PATIENCE, self._feeds
         self._feeds = []
+        # All first, so that sinks end side by side.
         for feed in feeds:
             feed.end(Message({"kind": "end", "done": done}))
         for feed in feeds:
@@ -108,7 +119,7 @@ class Feed:
         self.address, self._lock = address, Lock()
         self._queue: Queue[Message] = Queue(LENGTH)
         self._offered = self._delivered = self._archives = 0
-        self._reason = "it does not answer"
+        self._reason, self._refused = "it does not answer", dict[str, str]()
         try:
             self._process = subprocess.Popen(
                 COMMAND,
@@ -152,6 +163,17 @@ class Feed:
                 self._reader.join(1.0)
             except subprocess.TimeoutExpired:
                 _LINGERING.append(self._process)
+                # A process that hangs may not have read that the run has ended.
+                ending = Timer(LINGER + LAST, self._process.send_signal, [signal.SIGALRM])
+                ending.daemon = True
+                ending.start()
+        if self._refused:
+            log.warning(
+                "Sink %s refuses %s (%s); it has all other values.",
+                self.address,
+                ", ".join(self._refused),
+                next(iter(self._refused.values())),
+            )
         lost = self._offered - self._delivered
         if lost:
             log.warning(
@@ -177,11 +199,12 @@ class Feed:
                     return
 
     def _read(self) -> None:
-        """Note what the process says: messages delivered, and why others were not."""
+        """Record the answers of the process: delivered messages, and why others were not."""
         assert self._process
         assert self._process.stdout
         with suppress(OSError, ValueError), self._process.stdout as lines:
             for line in lines:
-                said = json.loads(line)
-                self._delivered = said["delivered"]
-                self._reason = said["error"] or self._reason
+                answer = json.loads(line)
+                self._delivered = answer["delivered"]
+                self._reason = answer["error"] or self._reason
+                self._refused = answer["refused"]

@@ -5,12 +5,13 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from queue import Empty, Queue
+from contextlib import suppress
+from queue import Empty, Full, Queue
 from threading import Thread
 from typing import BinaryIO, Protocol, TextIO
 
-from .messages import Message, receive
-from .record import Record
+from ..archive.file import HDF5
+from .address import Message, Record, Refused, receive
 
 BATCH = 100
 """Reports that are written together."""
@@ -18,12 +19,14 @@ WAITING = 200
 """Messages that are read ahead."""
 NICE = 19
 LINGER = 60
-"""Seconds in which it may finish after the end of its run."""
+"""Seconds in which the process may finish after the end of its run."""
+LAST = 10
+"""Seconds after those in which it may still end its record."""
 
 Report = tuple[int, dict[str, float]]
 """A step and its numbers."""
 Draw = Callable[[bytes], bytes | None]
-"""Draws an archive file as PNG, where that is possible."""
+"""A function that draws an archive file as PNG; None if that is not possible."""
 
 
 class Sink(Protocol):
@@ -64,7 +67,7 @@ class Deliveries:
 
     def __init__(self, sink: Sink, answers: TextIO, draw: Draw):
         self._sink, self._answers, self._draw = sink, answers, draw
-        self._delivered = 0
+        self._delivered, self._refused = 0, dict[str, str]()
 
     def take(self, messages: Sequence[Message]) -> None:
         """Deliver messages; an error loses them alone."""
@@ -72,6 +75,9 @@ class Deliveries:
         try:
             self._deliver(messages)
             self._delivered += len(messages)
+        except Refused as some:
+            self._delivered += len(messages)
+            self._refused |= {name: why[:300] for name, why in some.reasons.items()}
         except Exception as problem:  # The libraries raise whatever they like.
             error = f"{type(problem).__name__}: {problem}"[:300]
         self.tell(error)
@@ -79,13 +85,13 @@ class Deliveries:
     def _deliver(self, messages: Sequence[Message]) -> None:
         header = messages[0].header
         if header["kind"] == "report":
-            found = [(one.header["step"], one.header["values"]) for one in messages]
-            self._sink.reports(found)
+            reports = [(one.header["step"], one.header["values"]) for one in messages]
+            self._sink.reports(reports)
         elif header["kind"] == "archive":
             self._picture(messages[0])
         else:
             name, data = header["name"], messages[0].data
-            if name.endswith(".h5"):
+            if data.startswith(HDF5):  # People name the archive file as they like.
                 self._picture(messages[0])
             self._sink.file(name, data)
 
@@ -94,7 +100,8 @@ class Deliveries:
             self._sink.picture(message.header["step"], drawn)
 
     def tell(self, error: str = "") -> None:
-        print(json.dumps({"delivered": self._delivered, "error": error}), file=self._answers)
+        answer = {"delivered": self._delivered, "error": error, "refused": self._refused}
+        print(json.dumps(answer), file=self._answers)
         self._answers.flush()
 
 
@@ -122,36 +129,79 @@ def groups(waiting: "Queue[Message | None]") -> Iterator[list[Message]]:
             yield [message]
 
 
-def read_ahead(stream: BinaryIO, waiting: "Queue[Message | None]") -> None:
-    """Read messages until the run ends or dies; then the process may linger."""
-    while message := receive(stream):
-        waiting.put(message)
-        if message.kind == "end":
-            break
-    signal.alarm(LINGER)
-    waiting.put(None)
+class Overdue(BaseException):
+    """The process has lingered for too long; no `except Exception` of a library stops it."""
+
+
+def raise_overdue(*_: object) -> None:
+    # The next alarm ends the process, whatever a library makes of this exception.
+    signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.alarm(LAST)
+    raise Overdue
+
+
+class Reader:
+    """Reads messages until the run ends or dies; then the process may linger."""
+
+    def __init__(self, stream: BinaryIO):
+        self.waiting: Queue[Message | None] = Queue(WAITING)
+        self.done = self._lingers = self._drops = False
+        self._parent = os.getppid()
+        self._thread = Thread(target=self._read, args=[stream], daemon=True)
+        self._thread.start()
+
+    def drop(self) -> bool:
+        """Skip what is left to read; return whether the run is done."""
+        self._drops = self._lingers = True
+        self._thread.join()
+        return self.done
+
+    def _read(self, stream: BinaryIO) -> None:
+        while (message := receive(stream)) and message.kind != "end":
+            self._put(message)
+        self.done = message is not None and message.header["done"]
+        self._linger()
+        self._put(None)
+
+    def _put(self, message: Message | None) -> None:
+        while not self._drops:
+            with suppress(Full):
+                self.waiting.put(message, timeout=1.0)
+                return
+            # A sink that hangs would keep the end of the stream from being read.
+            if os.getppid() != self._parent:
+                self._linger()
+
+    def _linger(self) -> None:
+        if not self._lingers:
+            self._lingers = True
+            signal.alarm(LINGER)
 
 
 def main(draw: Draw) -> None:
-    """Deliver what arrives at standard input; say on standard output what was delivered."""
-    os.nice(NICE)
+    """Deliver the messages of standard input; count the delivered ones on standard output."""
+    os.nice(NICE)  # A run on all cores must not wait for its records.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # Libraries print.
     opening = receive(sys.stdin.buffer)
     if opening is None:
         return
-    waiting: Queue[Message | None] = Queue(WAITING)
-    Thread(target=read_ahead, args=[sys.stdin.buffer, waiting], daemon=True).start()
+    signal.signal(signal.SIGALRM, raise_overdue)
+    reader = Reader(sys.stdin.buffer)
     try:
         sink = open_sink(opening)
     except Exception as problem:  # See `Deliveries.take`.
         error = f"{type(problem).__name__}: {problem}"[:300]
-        print(json.dumps({"delivered": 0, "error": error}), file=answers, flush=True)
+        print(
+            json.dumps({"delivered": 0, "error": error, "refused": {}}),
+            file=answers,
+            flush=True,
+        )
         return
-    deliveries, done = Deliveries(sink, answers, draw), False
-    for messages in groups(waiting):
-        if messages[0].kind == "end":
-            done = messages[0].header["done"]
-        else:
+    deliveries = Deliveries(sink, answers, draw)
+    try:
+        for messages in groups(reader.waiting):
             deliveries.take(messages)
-    sink.close(done)
+        sink.close(reader.done)
+    except Overdue:
+        sink.close(reader.drop())

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ..archive.atomic import write_whole
 from ..optional import require
+from .address import Record
 from .process import Report
-from .record import Record
 
 EXTRA = "microcosmos[tensorboard]"
 
@@ -27,9 +27,8 @@ class TensorBoard:
         self._writer = library.SummaryWriter(
             str(self._folder), purge_step=first, flush_secs=5, filename_suffix=f".{os.getpid()}"
         )
-        if not record.generation:
-            text = json.dumps(record.spec, indent=1)
-            self._writer.add_text("spec", f"```json\n{text}\n```", 0)
+        text = json.dumps(record.spec, indent=1)
+        self._writer.add_text("spec", f"```json\n{text}\n```", record.generation)
 
     def reports(self, reports: Sequence[Report]) -> None:
         for step, values in reports:

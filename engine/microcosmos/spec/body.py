@@ -8,11 +8,62 @@ from pydantic import Field, Tag, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import bodies, plugins
-from ..bodies import swimmers
-from .base import BUILDERS, Part, field, name_in, one_of, sourced
-from .grown import GrownBody
+from ..bodies import growth, swimmers
+from .base import (
+    BUILDERS,
+    PAPER,
+    RODS,
+    Numeric,
+    Part,
+    field,
+    name_in,
+    one_of,
+    refuse,
+    sourced,
+)
 from .plugins import PluginName, PluginVersion, complete_plugin
-from .sources import PAPER, RODS
+
+
+class GrownBody(Part):
+    """A body that grows from a plan of segments in the genome: its largest sizes."""
+
+    builder: Literal["grown"]
+    nodes: int = field(48, ge=8, le=256, unit="nodes")
+    """Most nodes of a body."""
+    length: float = field(40.0, ge=4.0, le=1000.0, unit="cells")
+    """Largest distance between two nodes along a body."""
+    segments: int = field(8, ge=1, le=32)
+    """Most segments of a plan."""
+    # Smaller roots and limbs won by coarse resolution: on half the grid spacing they went 0.43
+    # to 0.75 times as far (docs/bodies.md, "Least sizes").
+    segment_nodes: int = field(24, ge=growth.LEAST_ROOT, le=128, unit="nodes")
+    """Most nodes of a segment."""
+    copies: int = field(6, ge=1, le=32)
+    """Most copies of a segment along the one that it is attached to."""
+    limbs: int = field(12, ge=1, le=64)
+    """Most copies of a segment in a body, with those of its parents and mirror images."""
+    rings: int = field(3, ge=1, le=8)
+    """Most rings of a body."""
+    spacing: float = field(1.0, ge=0.5, le=2.0, unit="cells")
+    """Rest length of an edge; above 2 cells, fluid leaks between the nodes."""
+
+    @property
+    def capacity(self) -> growth.Capacity:
+        """Return the fixed sizes of all bodies; the last row of nodes stays empty."""
+        return growth.Capacity(
+            nodes=self.nodes + 1,
+            segments=self.segments,
+            rings=self.rings,
+            limbs=self.limbs,
+            length=self.length,
+            spacing=self.spacing,
+        )
+
+    @property
+    def genes(self) -> growth.Segments:
+        """Return the limits of the genes of segments."""
+        return growth.Segments(self.segments, self.segment_nodes, self.copies)
+
 
 SUPPORT = 4.0
 """Width of the four-point delta in cells: room that a world needs beyond a body's extent."""
@@ -112,11 +163,17 @@ class Tree(Spaced):
     """Angle between the outermost branches of a fork."""
 
 
+Cells = Annotated[float, Numeric]
+Place = tuple[Cells, Cells]
+Node = Annotated[int, Numeric]
+Pair = tuple[Node, Node]
+
+
 class Polyline(Spaced):
     """A filament along given points, its nodes evenly spaced at about `spacing`."""
 
     builder: Literal["polyline"]
-    points: tuple[tuple[float, float], ...] = Field(min_length=2, max_length=MAX_NODES)
+    points: tuple[Place, ...] = Field(min_length=2, max_length=MAX_NODES)
     """Corners as [x, y] in cells. Only the shape counts; it is centred in the world."""
     closed: bool = False
     """Join the last point to the first."""
@@ -126,10 +183,17 @@ class Graph(Elastic):
     """Any filaments: nodes and edges, at rest as drawn."""
 
     builder: Literal["graph"]
-    nodes: tuple[tuple[float, float], ...] = Field(min_length=3, max_length=MAX_NODES)
+    nodes: tuple[Place, ...] = Field(min_length=3, max_length=MAX_NODES)
     """Positions as [x, y] in cells."""
-    edges: tuple[tuple[int, int], ...] = Field(min_length=2, max_length=4 * MAX_NODES)
+    edges: tuple[Pair, ...] = Field(min_length=2, max_length=4 * MAX_NODES)
     """Pairs of node numbers, from 0."""
+
+    @model_validator(mode="after")
+    def refuse_loose(self) -> Self:
+        joined = {node for edge in self.edges for node in edge}
+        loose = next((node for node in range(len(self.nodes)) if node not in joined), None)
+        refuse(loose is not None, "edges", f"must join every node; node {loose} is in none")
+        return self
 
 
 Swimmer = Literal["worm", "tadpole", "ray", "cilia", "jellyfish"]

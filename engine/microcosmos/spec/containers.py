@@ -1,13 +1,12 @@
-"""What an archive keeps instead of one elite in each cell."""
+"""Containers that replace one elite in each cell of an archive."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from ..naming import MeasureName
-from .base import Part, field, sourced
+from ..measures import MeasureName
+from .base import AURORA, DOMINATED_NOVELTY, MOME, Part, field, refuse, refuse_repeated, sourced
 from .plugins import OR_PLUGIN
-from .sources import AURORA, DOMINATED_NOVELTY, MOME
 
 
 class Fronts(Part):
@@ -24,7 +23,7 @@ class Fronts(Part):
     """Second objective, another than the fitness's; its default axis has the scale of
     distances and of the hypervolume."""
     goal: Literal["least", "most"] = "least"
-    """Whether the least or the most of the measure is best."""
+    """The least or the most of the measure is best."""
     size: int = field(8, ge=2, le=64, unit="elites")
     """Longest front of a cell."""
 
@@ -44,6 +43,8 @@ class DominatedNovelty(Part):
     """Nearest fitter elites whose mean distance decides."""
 
 
+# With all measures the first axis is the size of the motion, 38 % of the variance, so slow
+# creatures get most of the cells (docs/evolution.md, "Learned axes").
 STROKE: tuple[MeasureName, ...] = (
     "symmetry",
     "curvature_mean",
@@ -82,13 +83,12 @@ class LearnedAxes(Part):
 
     @model_validator(mode="after")
     def refuse_too_few(self) -> "LearnedAxes":
-        if len(set(self.measures)) < len(self.measures):
-            raise ValueError(f"`measures` must not repeat, got {list(self.measures)}")
-        if self.measures and len(self.measures) < self.axes:
-            raise ValueError(
-                f"`measures` must be at least as many as `axes` ({self.axes}), got "
-                f"{len(self.measures)}"
-            )
+        refuse_repeated("measures", self.measures)
+        refuse(
+            self.measures and len(self.measures) < self.axes,
+            "measures",
+            f"must be at least as many as `axes` ({self.axes}), got {len(self.measures)}",
+        )
         return self
 
 
@@ -96,4 +96,4 @@ Container = Annotated[
     Fronts | DominatedNovelty | LearnedAxes,
     Field(discriminator="kind"),
 ]
-"""What an archive keeps instead of one elite in each cell."""
+"""A container that replaces one elite in each cell."""

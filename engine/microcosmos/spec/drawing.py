@@ -113,22 +113,22 @@ def _alone(world: World, body: Body) -> Drawing:
     return _in_world(world, {body.builder: shape(body)})
 
 
-def _in_world(world: World, found: dict[str, bodies.Body]) -> Drawing:
+def _in_world(world: World, by_name: dict[str, bodies.Body]) -> Drawing:
     """Draw bodies by name, each where it starts."""
     places = ALONE if world.copies is None else world.copies.places
     size = world.width, world.height
-    drawn = tuple(_placed(name, *size, body, places) for name, body in found.items())
+    drawn = tuple(_placed(name, *size, body, places) for name, body in by_name.items())
     return Drawing(*size, drawn, solid=world.solid)
 
 
 def _random(world: World, body: GrownBody, seed: int) -> Drawing:
     """Draw bodies of random plans, the kind that a search begins with."""
-    rng, found = np.random.default_rng(seed), {}
+    rng, plans = np.random.default_rng(seed), {}
     for number in range(1, RANDOM_PLANS + 1):
         uniform = rng.random(growth.PLAN_DRAWS, np.float32)
         plan = growth.random_plan(uniform, body.genes)
-        found[f"random plan {number}"] = growth.grown_body(plan, body.capacity)
-    return _in_world(world, found)
+        plans[f"random plan {number}"] = growth.grown_body(plan, body.capacity)
+    return _in_world(world, plans)
 
 
 def _placed(

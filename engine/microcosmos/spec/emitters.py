@@ -1,12 +1,30 @@
 """Emitters: the sources of offspring in a search."""
 
-from typing import Annotated, Literal
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, Tag
+from pydantic.json_schema import SkipJsonSchema
 
-from .. import plugins
-from .base import NETWORK_OPERATORS, VECTOR_OPERATORS, Part, field, sourced
-from .sources import CMA_MAE, CMA_ME, CMA_MEGA, CURIOSITY, LINE, NEAT, OMG_MEGA, TOURNAMENT
+from ..invalid import InvalidField
+from ..plugins import Emits, is_plugin
+from .base import (
+    CMA_MAE,
+    CMA_ME,
+    CMA_MEGA,
+    CURIOSITY,
+    LINE,
+    NEAT,
+    PERCEPTIBLE,
+    TOURNAMENT,
+    Part,
+    field,
+    name_in,
+    one_of,
+    refuse,
+    sourced,
+)
+from .plugins import PluginName, PluginVersion, complete_plugin
 
 Rate = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -14,13 +32,33 @@ Rate = Annotated[float, Field(ge=0.0, le=1.0)]
 class WeightedEmitter(Part):
     """An emitter beside others."""
 
+    operator: str
     share: int = field(1, ge=1, le=1000)
     """Weight of this emitter when the batch is divided among all emitters."""
+
+    facts: ClassVar[Emits]
+    """Facts about every emitter of the class."""
+
+    @property
+    def emits(self) -> Emits:
+        """Return facts about the emitter: genomes, source of learning, gradients."""
+        return self.facts
+
+    @property
+    def is_portable(self) -> bool:
+        """Return whether it computes the same bits on every processor."""
+        # XLA's programs for derivatives round as a processor likes, see docs/physics.md.
+        return not self.emits.gradients
+
+    def refuse_slots(self, slots: int) -> None:
+        """Raise `ValueError` where it cannot make this number of offspring in a generation."""
 
 
 class SelectingEmitter(WeightedEmitter):
     """An emitter that draws its parents from the archive."""
 
+    # Half of the parents by tournament: with stronger selection the fittest are faster and the
+    # kinds of motion fewer (docs/evolution.md, "Encodings").
     select: Literal["uniform", "mixed", "tournament", "curiosity"] = field(
         "mixed", source=f"{TOURNAMENT}; {CURIOSITY}"
     )
@@ -32,6 +70,8 @@ class SelectingEmitter(WeightedEmitter):
 class RandomEmitter(WeightedEmitter):
     """New random genomes: a baseline that learns nothing."""
 
+    facts: ClassVar[Emits] = Emits(varies=("networks", "numbers"))
+
     operator: Literal["random"] = "random"
 
 
@@ -39,6 +79,7 @@ class NeatEmitter(SelectingEmitter):
     """Elites varied by NEAT's mutations, some crossed with another elite first."""
 
     model_config = sourced(f"{NEAT}, sections 3.1 and 3.2")
+    facts: ClassVar[Emits] = Emits(varies=("networks",))
 
     operator: Literal["neat"] = "neat"
     crossover: Rate = 0.0
@@ -49,48 +90,66 @@ class LineEmitter(SelectingEmitter):
     """An elite plus an isotropic step and a step along the line to another elite."""
 
     model_config = sourced(LINE)
+    facts: ClassVar[Emits] = Emits(varies=("numbers",))
 
     operator: Literal["iso+line"] = "iso+line"
-    iso: float = field(0.1, gt=0.0, le=2.0)
+    # 1.8 times the QD score of 0.02 (docs/evolution.md, "Steps of iso+line").
+    iso: float = field(0.1, ge=PERCEPTIBLE, le=2.0)
     """Standard deviation of the isotropic step; genes lie within ±1."""
-    line: float = field(0.2, gt=0.0, le=2.0)
+    line: float = field(0.2, ge=PERCEPTIBLE, le=2.0)
     """Standard deviation of the step along the line, relative to the line's length."""
 
 
 class GaussianEmitter(SelectingEmitter):
     """An elite plus an isotropic step."""
 
+    facts: ClassVar[Emits] = Emits(varies=("numbers",))
+
     operator: Literal["gaussian"] = "gaussian"
-    step: float = field(0.1, gt=0.0, le=2.0)
+    step: float = field(0.1, ge=PERCEPTIBLE, le=2.0)
     """Standard deviation of the step; genes lie within ±1."""
-
-
-class CmaMaeEmitter(WeightedEmitter):
-    """CMA-MAE: evolution strategies that improve on thresholds, which follow the archive."""
-
-    model_config = sourced(CMA_MAE)
-
-    operator: Literal["cma-mae"] = "cma-mae"
-    step: float = field(0.2, gt=0.0, le=2.0)
-    """Initial standard deviation; genes lie within ±1."""
-    learning_rate: Rate = 0.01
-    """Rate at which a cell's threshold follows the fitness found there; 0: CMA-ES."""
-    threshold: float = field(0.0, unit="fitness")
-    """Threshold of empty cells."""
-    emitters: int = field(1, ge=1, le=64)
-    """Strategies that share the thresholds, each with an equal part of the offspring."""
 
 
 class CmaMeEmitter(WeightedEmitter):
     """CMA-ME's improvement emitters of QDax, which must be installed."""
 
     model_config = sourced(CMA_ME)
+    facts: ClassVar[Emits] = Emits(varies=("numbers",), learns="cells")
 
     operator: Literal["cma-me"] = "cma-me"
-    step: float = field(0.2, gt=0.0, le=2.0)
+    step: float = field(0.2, ge=PERCEPTIBLE, le=2.0)
     """Initial standard deviation; genes lie within ±1."""
     emitters: int = field(1, ge=1, le=64)
     """Emitters that take turns, one per generation."""
+
+    @property
+    def is_portable(self) -> bool:
+        return False  # QDax decomposes matrices by a library of linear algebra.
+
+
+class CmaMaeEmitter(WeightedEmitter):
+    """CMA-MAE: evolution strategies that improve on thresholds, which follow the archive."""
+
+    model_config = sourced(CMA_MAE)
+    facts: ClassVar[Emits] = Emits(varies=("numbers",), learns="cells")
+
+    operator: Literal["cma-mae"] = "cma-mae"
+    step: float = field(0.2, ge=PERCEPTIBLE, le=2.0)
+    """Initial standard deviation; genes lie within ±1."""
+    learning_rate: Rate = 0.01
+    """Rate at which a cell's threshold follows the fitness found there; 0: CMA-ES."""
+    threshold: float = field(0.0, ge=-1e30, le=1e30, unit="fitness")
+    """Threshold of empty cells."""
+    emitters: int = field(1, ge=1, le=64)
+    """Strategies that share the thresholds, each with an equal part of the offspring."""
+
+    def refuse_slots(self, slots: int) -> None:
+        refuse(
+            slots % self.emitters,
+            "emitters",
+            f"must divide its {slots} offspring of a generation evenly, got "
+            f"{self.emitters}. Change `emitters` or `batch`",
+        )
 
 
 class PopulationEmitter(WeightedEmitter):
@@ -100,17 +159,14 @@ class PopulationEmitter(WeightedEmitter):
     """
 
     model_config = sourced(NEAT)
+    facts: ClassVar[Emits] = Emits(varies=("networks",), learns="offspring")
 
     operator: Literal["population"] = "population"
     preset: Literal["paper", "tensorneat"] = "paper"
     """Settings of Stanley and Miikkulainen (2002) with the mutation rates of `genome`, or the
     defaults of TensorNEAT with its own rates."""
-    backend: Literal["microcosmos", "tensorneat"] = "microcosmos"
-    """Implementation: ours, or TensorNEAT with its defaults if it is installed."""
     threshold: float | None = field(None, gt=0.0, le=1e3)
     """Compatibility distance within which networks belong to one species."""
-    target_species: int | None = field(None, ge=0, le=1000, unit="species")
-    """Number of species that the threshold is adjusted towards; 0: fixed threshold."""
     stagnation: int | None = field(None, ge=1, unit="generations")
     """Generations without improvement after which a species has no offspring."""
     survival: float | None = field(None, gt=0.0, le=1.0)
@@ -119,107 +175,115 @@ class PopulationEmitter(WeightedEmitter):
     """Probability of crossover with a second parent."""
 
 
-class LamarckianEmitter(SelectingEmitter):
-    """NEAT's variation; offspring then learn by gradients and pass on what they learned."""
-
-    model_config = sourced(OMG_MEGA)
-
-    operator: Literal["lamarckian"] = "lamarckian"
-    crossover: Rate = 0.0
-    """Probability of crossover with a second parent."""
-    lessons: int = field(2, ge=1, le=100)
-    """Gradient steps on fitness and descriptors. Each takes a forward simulation and one
-    backward simulation per gradient, and counts as an evaluation."""
-    step: float = field(0.3, gt=0.0, le=100.0)
-    """Length of a step in the space of weights and biases."""
-    diversity: float = field(1.0, ge=0.0, le=100.0)
-    """Standard deviation of the random weight of each descriptor's gradient, relative to the
-    fitness gradient; 0: fitness alone."""
-    segment: int | None = field(None, ge=1, unit="steps")
-    """Steps that a gradient keeps in memory at a time, recomputing the others; empty: all."""
-
-
 class CmaMegaEmitter(WeightedEmitter):
     """CMA-MEGA: an evolution strategy over gradient steps of fitness and descriptors."""
 
     model_config = sourced(CMA_MEGA)
+    facts: ClassVar[Emits] = Emits(varies=("numbers",), learns="cells", gradients=1)
 
     operator: Literal["cma-mega"] = "cma-mega"
-    step: float = field(0.5, gt=0.0, le=100.0)
+    step: float = field(0.5, ge=PERCEPTIBLE, le=100.0)
     """Initial standard deviation of the weights of unit gradients; genes lie within ±1."""
-    rate: float = field(1.0, gt=0.0, le=10.0)
+    rate: float = field(1.0, ge=PERCEPTIBLE, le=10.0)
     """Learning rate of the mean solution towards its best offspring."""
     segment: int | None = field(None, ge=1, unit="steps")
     """Steps that a gradient keeps in memory at a time, recomputing the others; empty: all."""
 
 
+class PluginEmitter(WeightedEmitter):
+    """An emitter that a plug-in builds."""
+
+    operator: PluginName
+    plugin: PluginVersion
+
+    complete = complete_plugin(("emitter",), "operator")
+
+    @property
+    def emits(self) -> Emits:
+        assert self.plugin.emits is not None  # Its declaration has them.
+        return self.plugin.emits
+
+    @property
+    def is_portable(self) -> bool:
+        return False  # A module may sum as a processor likes.
+
+
+BUILT_IN: dict[str, WeightedEmitter] = {
+    one.operator: one
+    for one in (
+        RandomEmitter(),
+        NeatEmitter(),
+        LineEmitter(),
+        GaussianEmitter(),
+        CmaMeEmitter(),
+        CmaMaeEmitter(),
+        PopulationEmitter(),
+        CmaMegaEmitter(),
+    )
+}
+"""The built-in emitters with their defaults, by name."""
+
 Emitter = Annotated[
-    RandomEmitter
-    | NeatEmitter
-    | PopulationEmitter
-    | LineEmitter
-    | GaussianEmitter
-    | CmaMaeEmitter
-    | CmaMeEmitter
-    | LamarckianEmitter
-    | CmaMegaEmitter,
-    Field(discriminator="operator"),
+    Annotated[RandomEmitter, Tag("random")]
+    | Annotated[NeatEmitter, Tag("neat")]
+    | Annotated[LineEmitter, Tag("iso+line")]
+    | Annotated[GaussianEmitter, Tag("gaussian")]
+    | Annotated[CmaMeEmitter, Tag("cma-me")]
+    | Annotated[CmaMaeEmitter, Tag("cma-mae")]
+    | Annotated[PopulationEmitter, Tag("population")]
+    | Annotated[CmaMegaEmitter, Tag("cma-mega")]
+    | Annotated[SkipJsonSchema[PluginEmitter], Tag("plugin")],
+    *one_of("operator", tuple(BUILT_IN), name_in("operator")),
 ]
 """One source of offspring."""
 
-VARYING = ("neat", "iso+line", "gaussian")
-"""Operators that vary any parents."""
-STATELESS = ("random", *VARYING)
-"""Operators that learn nothing from the outcome, so that any of their offspring, and any number
+STATELESS = tuple(name for name, one in BUILT_IN.items() if one.emits.learns == "nothing")
+"""Emitters that learn nothing from the outcome, so that any of their offspring, and any number
 of them, may be evaluated."""
 
-USING_GRADIENTS = ("lamarckian", "cma-mega")
-"""Operators that need the derivatives of all descriptors."""
+VARYING = tuple(name for name, one in BUILT_IN.items() if isinstance(one, SelectingEmitter))
+"""Emitters that vary any parents."""
+
+UNKNOWN = Emits(varies=("networks", "numbers"), learns="cells")
+"""Facts about an emitter of another version."""
 
 
-def refuse_unfit_emitters(emitters: tuple[Emitter, ...], encoding: str) -> None:
-    """Raise `ValueError` where an operator cannot vary an encoding's genomes."""
-    vectors = encoding in ("direct", "weights") or plugins.is_plugin(encoding)
-    fit, unfit = NETWORK_OPERATORS, VECTOR_OPERATORS
-    if vectors:
-        fit, unfit = unfit, fit
+def emits_of(emitter: Mapping[str, Any]) -> Emits:
+    """Return the facts about an emitter in a complete document."""
+    name = emitter["operator"]
+    if is_plugin(name):
+        return Emits(**emitter["plugin"]["emits"])
+    # A run of another version may name an emitter that this one does not have.
+    return BUILT_IN[name].emits if name in BUILT_IN else UNKNOWN
+
+
+def refuse_unfit_emitters(emitters: Sequence[WeightedEmitter], encoding: str) -> None:
+    """Raise `ValueError` where an emitter cannot vary an encoding's genomes."""
+    genes = "numbers" if encoding == "direct" or is_plugin(encoding) else "networks"
     for emitter in emitters:
-        if emitter.operator in unfit:
-            raise ValueError(
-                f"`search.emitters` must be random or of {', '.join(fit)} where "
-                f"`control.encoding` is {encoding!r}, got {emitter.operator!r}"
-            )
-    foreign = [getattr(emitter, "backend", None) == "tensorneat" for emitter in emitters]
-    if any(foreign) and encoding == "body-graph":
-        raise ValueError(
-            "`backend` of a population must be 'microcosmos' where `control.encoding` is "
-            "'body-graph': TensorNEAT has no body plans, got 'tensorneat'"
-        )
-    numbering = [
-        emitter.operator for emitter in emitters if emitter.operator in NETWORK_OPERATORS
-    ]
-    if any(foreign) and len(numbering) > 1:
-        raise ValueError(
-            '`search.emitters` must hold nothing but random beside backend "tensorneat", which '
-            f"numbers genes itself, got {', '.join(numbering)}"
-        )
-
-
-def refuse_uneven(emitters: tuple[Emitter, ...], slots: tuple[int, ...]) -> None:
-    """Raise `ValueError` where the strategies of CMA-MAE cannot have equal parts."""
-    for emitter, count in zip(emitters, slots, strict=True):
-        if isinstance(emitter, CmaMaeEmitter) and count % emitter.emitters:
-            raise ValueError(
-                f"`emitters` of 'cma-mae' must divide its {count} offspring of a generation "
-                f"evenly, got {emitter.emitters}. Change `emitters` or `batch`"
+        if genes not in emitter.emits.varies:
+            fit = [name for name, one in BUILT_IN.items() if genes in one.emits.varies]
+            raise InvalidField(
+                "search.emitters",
+                f"must be among {', '.join(fit)} where `control.encoding` is {encoding!r}, "
+                f"got {emitter.operator!r}",
             )
 
 
-def gradients(emitter: Emitter, slots: int) -> int:
-    """Return the number of gradients that an emitter needs in a generation."""
-    if isinstance(emitter, LamarckianEmitter):
-        return emitter.lessons * slots
-    return int(isinstance(emitter, CmaMegaEmitter))
+def refuse_initial(emitters: Sequence[WeightedEmitter], initial: int, batch: int) -> None:
+    """Raise `ValueError` where a population cannot begin with a number of creatures."""
+    if not initial or not any(isinstance(one, PopulationEmitter) for one in emitters):
+        return
+    refuse(
+        len(emitters) > 1,
+        "search.initial",
+        f"must be empty for a population beside other emitters, got {initial} creatures",
+    )
+    refuse(
+        initial > batch,
+        "search.initial",
+        f"must have at most `search.batch` ({batch}) creatures for a population, got {initial}",
+    )
 
 
 def slots(batch: int, shares: tuple[int, ...]) -> tuple[int, ...]:

@@ -1,27 +1,29 @@
 """The common part of the specs of searches."""
 
 from abc import abstractmethod
+from math import ceil
 from typing import Any, Generic, Self, TypeVar
 
 from pydantic import model_validator
 
-from .base import Part, field
+from ..invalid import InvalidField
+from ..measures import RECORDED
+from .base import Part, field, refuse
 from .body import Body, Chain, is_unavailable, resolved
 from .containers import Fronts
 from .control import Control, Genome
 from .coupling import Coupling, refuse_without_feasible
-from .emitters import (
-    STATELESS,
-    Emitter,
-    PopulationEmitter,
-    gradients,
-    refuse_unfit_emitters,
-)
+from .emitters import BUILT_IN, Emitter, refuse_initial, refuse_unfit_emitters
 from .encodings import Controller, refuse_cramped
-from .measures import MEASURES
-from .placement import refuse_blocked, refuse_crowded
-from .scene import Scene, refuse_misfit, refuse_senseless, refuse_swept
-from .search import MEASURED, Archive, Generations, Task
+from .scene import (
+    Scene,
+    refuse_blocked,
+    refuse_crowded,
+    refuse_misfit,
+    refuse_senseless,
+    refuse_swept,
+)
+from .search import MEASURED, STROKED, Archive, Generations, Task
 from .world import Steric, World
 
 Name = TypeVar("Name", bound=str)
@@ -54,6 +56,19 @@ LITERAL: dict[str, Any] = {
 """Parts as in the paper."""
 
 
+def refuse_strokeless(control: Controller, task: Task) -> None:
+    """Raise `ValueError` where no creature could complete the strokes that fitness counts."""
+    period = getattr(control, "period", 0.0)
+    least = ceil(2 * period)
+    refuse(
+        task.fitness in STROKED and task.steps < least,
+        "task.steps",
+        f"must be at least {least}, two strokes of `control.period` {period:g}, where "
+        f"`task.fitness` is {task.fitness!r}, which leaves out the first; got {task.steps}",
+        least=least,
+    )
+
+
 class Evolution(Part, Generic[Name, SearchSpec]):
     """A search over generations of creatures in one scene, with an archive of elites."""
 
@@ -77,75 +92,60 @@ class Evolution(Part, Generic[Name, SearchSpec]):
         refuse_misfit(self.world, self.body, self.control)
         refuse_swept(self.coupling, self.body)
         refuse_cramped(self.control, self.genome)
-        refuse_crowded(self.world, self.body, self.task)
-        refuse_blocked(self.world, self.body, self.task)
+        refuse_crowded(self.world, self.body, self.control, self.task)
+        refuse_blocked(self.world, self.body, self.control, self.task)
         refuse_senseless(self.world, self.control, self.task)
+        refuse_strokeless(self.control, self.task)
         again = self.search.reevaluation
         posed = self.world.solid is None and self.world.copies is None
-        if again is not None and again.pose and not posed:
-            raise ValueError(
-                "`search.reevaluation.pose` must be false where the world has obstacles, walls "
-                "or copies, which a body in a random pose may start in; got true"
-            )
+        refuse(
+            again is not None and again.pose and not posed,
+            "search.reevaluation.pose",
+            "must be false where the world has obstacles, walls "
+            "or copies, which a body in a random pose may start in; got true",
+        )
         refuse_unfit_emitters(self.emitters, self.control.encoding)
         if self.search.feasible:
             refuse_without_feasible(self.coupling, "search.feasible")
-        return self
-
-    @model_validator(mode="after")
-    def check_initial(self) -> Self:
-        emitters, batch, initial = self.emitters, self.search.batch, len(self.search.initial)
-        populations = [one for one in emitters if isinstance(one, PopulationEmitter)]
-        if not initial or not populations:
-            return self
-        if len(emitters) > 1 or populations[0].backend != "microcosmos":
-            raise ValueError(
-                "`search.initial` must be empty for a population beside other emitters or with "
-                f"another program's backend, got {initial} creatures"
-            )
-        if initial > batch:
-            raise ValueError(
-                f"`search.initial` must have at most `search.batch` ({batch}) creatures for a "
-                f"population, got {initial}"
-            )
+        refuse_initial(self.emitters, len(self.search.initial), self.search.batch)
         return self
 
     @model_validator(mode="after")
     def check_container(self) -> Self:
-        """Raise `ValueError` for what needs one elite in each cell, where there is not."""
+        """Raise `ValueError` where the search needs one elite in each cell and has none."""
         container = self.archive.container
         if container is None:
             return self
-        recorded = {*MEASURES, *self.archive.plugins}
+        recorded = {*RECORDED, *self.archive.named, *self.archive.plugins}
         recorded |= {self.task.fitness} if self.task.plugin else set()
         for name in getattr(container, "measures", ()):
-            if name not in recorded:
-                raise ValueError(
-                    "`archive.container.measures` must be recorded, those of plug-ins as a "
-                    f"descriptor or the fitness, got {name!r}"
-                )
-        if getattr(self.search, "screening", None):
-            raise ValueError(
-                "`search.screening` must be empty with `archive.container`, got settings"
+            refuse(
+                name not in recorded,
+                "archive.container.measures",
+                "must be recorded, those of plug-ins as a "
+                f"descriptor or the fitness, got {name!r}",
             )
-        if self.search.reevaluation and self.search.reevaluation.decides:
-            raise ValueError(
-                "`search.reevaluation.decides` must be false with `archive.container`, got true"
-            )
-        allowed = (*STATELESS, "population")
+        refuse(
+            getattr(self.search, "screening", None),
+            "search.screening",
+            "must be empty with `archive.container`, got settings",
+        )
         for emitter in self.emitters:
-            if emitter.operator not in allowed:
-                raise ValueError(
-                    f"`search.emitters` must be among {', '.join(allowed)} with "
-                    f"`archive.container`, got {emitter.operator!r}, which learns from cells"
+            if emitter.emits.learns == "cells":
+                allowed = [n for n, one in BUILT_IN.items() if one.emits.learns != "cells"]
+                raise InvalidField(
+                    "search.emitters",
+                    f"must be among {', '.join(allowed)} with "
+                    f"`archive.container`, got {emitter.operator!r}, which learns from cells",
                 )
         if isinstance(container, Fronts):
             fitness = self.task.fitness
-            if container.measure == MEASURED.get(fitness, (fitness,))[0]:
-                raise ValueError(
-                    "`archive.container.measure` must be another measure than that of the "
-                    f"fitness {fitness!r}, got {container.measure!r}"
-                )
+            refuse(
+                container.measure == MEASURED.get(fitness, (fitness,))[0],
+                "archive.container.measure",
+                "must be another measure than that of the "
+                f"fitness {fitness!r}, got {container.measure!r}",
+            )
         return self
 
     @property
@@ -155,7 +155,7 @@ class Evolution(Part, Generic[Name, SearchSpec]):
 
     @property
     @abstractmethod
-    def emitters(self) -> tuple[Emitter | PopulationEmitter, ...]:
+    def emitters(self) -> tuple[Emitter, ...]:
         """Return the sources of offspring."""
 
     @property
@@ -166,7 +166,7 @@ class Evolution(Part, Generic[Name, SearchSpec]):
     @property
     def gradients(self) -> tuple[int, ...]:
         """Return the gradients per generation that each emitter needs."""
-        return tuple(map(gradients, self.emitters, self.slots))
+        return tuple(emitter.emits.gradients for emitter in self.emitters)
 
     @property
     def scene(self) -> Scene:
@@ -177,5 +177,6 @@ class Evolution(Part, Generic[Name, SearchSpec]):
             coupling=self.coupling,
             control=self.control,
             task=self.task,
+            measures=self.archive.named,
             plugins=self.archive.plugins,
         )

@@ -35,26 +35,25 @@ class Experiment:
 
     name: str
     title: str
+    about: str
+    """Half a sentence, which may follow the title."""
     spec: type[Part]
     presets: tuple[Preset, ...]
 
 
-def _experiment(title: str, module: Any, spec: type[Part]) -> Experiment:
+def _experiment(about: str, module: Any, spec: type[Part]) -> Experiment:
     presets = tuple(Preset(name, *rest) for name, rest in module.PRESETS.items())
-    return Experiment(spec.model_fields["experiment"].default, title, spec, presets)
+    name = spec.model_fields["experiment"].default
+    return Experiment(name, name.capitalize(), about, spec, presets)
 
 
 _ALL = (
-    (
-        "Quality-diversity: the fittest swimmer in every cell",
-        quality_diversity,
-        QualityDiversity,
-    ),
-    ("Neuroevolution: NEAT, one swimmer", neuroevolution, Neuroevolution),
-    ("Folding: filaments that fold into pictures", folding, Folding),
-    ("Refinement: one creature made fitter by gradients", refinement, Refinement),
-    ("Gaits: five swimmers at every viscosity", gaits, Gaits),
-    ("Scaling: wall time against the number of nodes", scaling, Scaling),
+    ("the fittest swimmer in every cell", quality_diversity, QualityDiversity),
+    ("NEAT, one swimmer", neuroevolution, Neuroevolution),
+    ("filaments that fold into pictures", folding, Folding),
+    ("one creature made fitter by gradients", refinement, Refinement),
+    ("five swimmers at every viscosity", gaits, Gaits),
+    ("wall time against the number of nodes", scaling, Scaling),
 )
 EXPERIMENTS = {one.name: one for one in (_experiment(*parts) for parts in _ALL)}
 

@@ -5,13 +5,13 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, Tag, model_validator
 
+from ..invalid import InvalidField
 from . import reverse
-from .base import Part, enough, field, name_in, one_of, sourced
+from .base import ADAM, DIGITS, PAPER, Part, enough, field, name_in, one_of, refuse, sourced
 from .body import Body, GrownBody, Walk, estimated_shape, is_unavailable, resolved
 from .coupling import Coupling
 from .scene import Fold, Scene
 from .search import Task
-from .sources import ADAM, DIGITS, PAPER
 from .targets import MAX_PIXELS, decoded, encoded
 from .targets import digit as handwritten
 from .world import World
@@ -59,9 +59,8 @@ class Picture(Part):
         try:
             ink = self.ink
         except ValueError as error:
-            raise ValueError(f"`pixels` {error}") from error
-        if not ink.any():
-            raise ValueError("`pixels` must show something, got a blank picture")
+            raise InvalidField("pixels", str(error)) from error
+        refuse(not ink.any(), "pixels", "must show something, got a blank picture")
         return self
 
 
@@ -78,6 +77,8 @@ Target = Annotated[
 ]
 
 
+# Edge angles that follow the geometry keep a filament from folding: after 60 updates the loss
+# was 0.125 instead of 0.022.
 FORCED = Coupling(
     projection="force", theta_feedback=0, forcing_iterations=2, constraint_iterations=4
 )
@@ -122,27 +123,35 @@ class Folding(Part):
     @model_validator(mode="after")
     def check(self) -> Self:
         if (longest := min(self.world.width, self.world.height)) < self.size:
-            raise ValueError(
-                f"`size` must be at most the world's shorter side of {longest}, got {self.size}"
+            raise InvalidField(
+                "size",
+                f"must be at most the world's shorter side of {longest}, got {self.size}",
+                most=longest,
             )
-        if self.world.energy is not None:
-            raise ValueError("`world.energy` must be empty: folding collects no energy")
-        if not self.world.open or self.world.copies is not None:
-            raise ValueError(
-                "`world.obstacles`, `world.flow` and `world.copies` must be empty: a filament "
-                "folds alone in an open box of fluid at rest"
-            )
+        refuse(
+            self.world.energy is not None,
+            "world.energy",
+            "must be empty: folding collects no energy",
+        )
+        refuse(
+            not self.world.open or self.world.copies is not None,
+            "world.obstacles",
+            "must be empty, as `world.flow` and `world.copies`: a filament "
+            "folds alone in an open box of fluid at rest",
+        )
         names = [target.name for target in self.targets]
-        if len(set(names)) < len(names):
-            raise ValueError(f"`targets` must have different names, got {names}")
+        refuse(
+            len(set(names)) < len(names), "targets", f"must have different names, got {names}"
+        )
         if isinstance(self.body, GrownBody):
-            raise ValueError("`body` must have a fixed graph to be folded, got 'grown'")
-        if not len(estimated_shape(self.body).joints):
-            raise ValueError("`body` must have a joint")
+            raise InvalidField("body", "must have a fixed graph to be folded, got 'grown'")
+        refuse(not len(estimated_shape(self.body).joints), "body", "must have a joint")
         if (needed := self.gradient_bytes / 2**30) > self.memory:
-            raise ValueError(
-                f"`memory` must be at least {enough(needed)} GiB for the gradient through "
-                f"{self.steps} steps, got {self.memory:.12g}"
+            raise InvalidField(
+                "memory",
+                f"must be at least {enough(needed)} GiB for the gradient through "
+                f"{self.steps} steps, got {self.memory:.12g}",
+                least=float(enough(needed)),
             )
         return self
 
@@ -159,6 +168,7 @@ class Folding(Part):
         step, state = self.reverse_bytes
         if self.steps * step <= self.memory * 2**30:
             return None
+        # The states kept and the steps of one segment together are least there.
         return max(1, round((self.steps * state / step) ** 0.5))
 
     @property

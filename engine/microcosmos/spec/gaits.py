@@ -5,14 +5,14 @@ from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import Field, ValidationInfo, model_validator
 
+from ..invalid import InvalidField
 from ..plugins import is_plugin
-from .base import Part, field
+from .base import PAPER, Part, field, refuse_repeated
 from .body import Body, PluginBody, Swimmer, SwimmerBody, is_unavailable, resolved
 from .coupling import Coupling
 from .plugins import OR_PLUGIN, PluginVersion, PluginVersions, pinned
 from .scene import Gait, Scene, refuse_too_large
 from .search import Task
-from .sources import PAPER
 from .world import Steric, World
 
 VISCOSITIES = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
@@ -65,16 +65,16 @@ class Gaits(Part):
         if not names and not held:
             return given
         if not isinstance(held, dict):
-            raise ValueError(f"`plugins` must be an object of gaits by name, got {held!r:.80}")
-        found = {n: pinned(("gait",), "swimmers", n, held.get(n), info)[0] for n in names}
-        return {**given, "plugins": found}
+            raise InvalidField(
+                "plugins", f"must be an object of gaits by name, got {held!r:.80}"
+            )
+        versions = {n: pinned(("gait",), "swimmers", n, held.get(n), info)[0] for n in names}
+        return {**given, "plugins": versions}
 
     @model_validator(mode="after")
     def check(self) -> Self:
         for name in ("swimmers", "forms", "viscosities"):
-            values = getattr(self, name)
-            if len(set(values)) < len(values):
-                raise ValueError(f"`{name}` must not repeat, got {list(values)}")
+            refuse_repeated(name, getattr(self, name))
         box = World(width=self.width, height=self.height)
         for swimmer in self.swimmers:
             refuse_too_large(box, swimmer_body(swimmer, self.plugins.get(swimmer)), 0.1)
@@ -107,6 +107,8 @@ class Gaits(Part):
         """Return the coupling of a form; all have the same delta."""
         if form == "paper":
             return Coupling(projection="none", theta_feedback=0, layers=2, kernel="peskin")
+        # Peskin's delta as in the paper, so that the forms differ in the coupling alone
+        # (docs/physics.md).
         return Coupling(nu_c=self.nu_c if form == "ours" else None, kernel="peskin")
 
 

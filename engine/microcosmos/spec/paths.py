@@ -1,4 +1,4 @@
-"""Fields of a spec by dotted path: test, replace, find the nearest, and combine values."""
+"""Fields of a spec by dotted path: test, replace, find the nearest, combine and compare."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
@@ -74,3 +74,99 @@ def inside(path: str, other: str) -> bool:
 def combinations(grid: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     """Return the values of each case of a sweep, the last field fastest."""
     return [dict(zip(grid, values, strict=True)) for values in product(*grid.values())]
+
+
+IGNORED = ("seed",)
+"""Fields that may differ within a group of runs."""
+
+KINDS = ("builder", "encoding", "kind", "operator")
+"""Fields that decide which other fields their part has."""
+
+MAX_FIELDS = 3
+"""Maximum number of fields in a label."""
+
+
+def flattened(document: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield every value of a spec with its dotted path."""
+    if isinstance(document, Sequence) and any(isinstance(x, Mapping) for x in document):
+        document = dict(enumerate(document))
+    if not isinstance(document, Mapping):
+        yield path, document
+        return
+    for name, part in document.items():
+        yield from flattened(part, f"{path}.{name}" if path else str(name))
+
+
+def is_none(value: Any) -> bool:
+    """Return whether a value stands for an absent part: null, or a list without entries."""
+    return value in (None, [], ())
+
+
+def differing(flats: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the paths whose values differ; an absent field is none.
+
+    Fields that only one kind of a part has are left out where the kind differs too, unless
+    their values differ within the kind.
+    """
+    paths = dict.fromkeys(path for flat in flats for path in flat if path not in IGNORED)
+    values = {path: [key(flat.get(path)) for flat in flats] for path in paths}
+    differ = {path: own for path, own in values.items() if len(set(own)) > 1}
+    everywhere = {path for path in differ if all(path in flat for flat in flats)}
+    return [p for p in differ if p in everywhere or not _follows(p, differ)]
+
+
+def key(value: Any) -> str:
+    """Return text that is equal for equal values of a field."""
+    return "none" if is_none(value) else repr(value)
+
+
+def _follows(path: str, differ: Mapping[str, Sequence[str]]) -> bool:
+    """Return whether the kind of a field's part, which differs too, decides its value."""
+    part, _, name = path.rpartition(".")
+    kinds = [differ[kind] for one in KINDS if (kind := f"{part}.{one}") in differ]
+    return name not in KINDS and any(
+        len(set(zip(kind, differ[path], strict=True))) == len(set(kind)) for kind in kinds
+    )
+
+
+def label(flat: Mapping[str, Any], paths: Sequence[str]) -> str:
+    """Return the values of the first paths, as `world viscosity 0.05`."""
+    parts = [f"{short(path)} {value_text(flat.get(path))}" for path in paths[:MAX_FIELDS]]
+    return ", ".join(parts) + (" …" if len(paths) > MAX_FIELDS else "")
+
+
+def short(path: str) -> str:
+    """Return the last two words of a path, without indices."""
+    words = [word for word in path.split(".") if not word.isdigit()]
+    return " ".join(words[-2:]).replace("_", " ")
+
+
+def number_text(value: float) -> str:
+    """Return the shortest text from four digits on that is read as the same number."""
+    texts = (f"{value:.{digits}g}" for digits in range(4, 18))
+    return next((text for text in texts if float(text) == value), str(value))
+
+
+def value_text(value: Any) -> str:
+    """Return a value of a spec as short text; long lists are cut."""
+    text = _whole_text(value)
+    is_list = isinstance(value, Sequence) and not isinstance(value, str)
+    return text[:39] + "…" if is_list and len(text) > 40 else text
+
+
+def value_texts(values: Sequence[Any]) -> list[str]:
+    """Return values of a field as text; lists whose first entries are equal stand whole."""
+    texts = list(map(value_text, values))
+    if len(set(texts)) == len(set(map(key, values))):
+        return texts
+    return list(map(_whole_text, values))
+
+
+def _whole_text(value: Any) -> str:
+    if is_none(value):
+        return "none"
+    if isinstance(value, float):
+        return number_text(value)
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return ", ".join(map(_whole_text, value))
+    return str(value)

@@ -8,8 +8,9 @@ from pydantic import Field, PlainSerializer, ValidationInfo, WrapValidator, mode
 from pydantic.json_schema import SkipJsonSchema
 
 from .. import plugins
-from ..plugins import Catalogue, is_plugin
-from .base import Digest, Part
+from ..invalid import InvalidField
+from ..plugins import Catalogue, Emits, is_plugin
+from .base import Digest, Part, refuse
 
 CONTEXT = "plugins"
 """The key of the validation context under which `parse` passes a catalogue of plug-ins."""
@@ -26,6 +27,8 @@ class PluginVersion(Part):
     """Unit of a measure."""
     sizes: dict[str, Annotated[int, Field(ge=0, le=65_536)]] = Field(default={})
     """Most nodes of a body, or numbers of genes of an encoding."""
+    emits: Annotated[Emits | None, Field(exclude_if=lambda emits: emits is None)] = None
+    """Facts about an emitter."""
     settings: dict[str, Any] = Field(default={})
     """Values of the declared settings."""
 
@@ -58,20 +61,21 @@ def pinned(
     if isinstance(given, PluginVersion):
         given = given.model_dump()
     if given is not None and not isinstance(given, Mapping):
-        raise ValueError(f"`plugin` must be an object with `settings`, got {given!r:.80}")
+        raise InvalidField("plugin", f"must be an object with `settings`, got {given!r:.80}")
     known: Catalogue = (info.context or {}).get(CONTEXT, plugins.LOADED)
-    found = [one for kind in kinds for one in known.versions(kind, name)]
+    versions = [one for kind in kinds for one in known.versions(kind, name)]
     source = (given or {}).get("source")
-    declared = next((one for one in found if source in (None, one.source)), None)
+    declared = next((one for one in versions if source in (None, one.source)), None)
+    # A machine that cannot run it must still read the file.
     if declared is None and source is not None:
         return given, None
     if declared is None:
         reason = known.explain_unknown(kinds[0], name)
-        raise ValueError(f"`{field}` must be known, got {name!r}: {reason}")
+        raise InvalidField(field, f"must be known, got {name!r}: {reason}")
     settings = (given or {}).get("settings") or {}
     if not isinstance(settings, Mapping):
-        raise ValueError(f"`plugin.settings` must be an object, got {settings!r:.80}")
-    version = declared.model_dump(include={"source", "title", "unit", "sizes"})
+        raise InvalidField("plugin.settings", f"must be an object, got {settings!r:.80}")
+    version = declared.model_dump(include={"source", "title", "unit", "sizes", "emits"})
     return version | {"settings": known.settings(declared, settings)}, declared
 
 
@@ -90,8 +94,7 @@ def completed(
     ):
         # The name in a complete spec was replaced: the version of the former plug-in goes.
         return {key: value for key, value in given.items() if key != "plugin"}, None
-    if plugin is not None:
-        raise ValueError(f"`plugin` must be left out where `{field}` is {name!r}")
+    refuse(plugin is not None, "plugin", f"must be left out where `{field}` is {name!r}")
     return given, None
 
 
@@ -114,7 +117,7 @@ class PluginUse:
     version: PluginVersion
 
 
-NAMING = ("fitness", "name", "builder", "encoding", "swimmer")
+NAMING = ("fitness", "name", "builder", "encoding", "swimmer", "operator")
 """Fields that may name a plug-in."""
 
 

@@ -4,9 +4,10 @@ from typing import Any, Literal, Self
 
 from pydantic import model_validator
 
+from .base import refuse
 from .body import GrownBody
 from .control import Genome
-from .emitters import USING_GRADIENTS, Emitter, NeatEmitter
+from .emitters import Emitter, NeatEmitter
 from .encodings import BodyGraph
 from .evolution import LITERAL, SMALL, Evolution
 from .search import Archive, Descriptor, Screening, Search, refuse_flat_axes
@@ -20,29 +21,27 @@ class QualityDiversity(Evolution[Literal["quality-diversity"], Search]):
     search: Search = Search()
 
     @model_validator(mode="after")
-    def check_descriptors(self) -> Self:
+    def check_search(self) -> Self:
         for emitter in self.search.emitters:
-            if emitter.operator in USING_GRADIENTS:
+            if emitter.emits.gradients:
                 refuse_flat_axes(self.archive, emitter.operator)
-        return self
-
-    @model_validator(mode="after")
-    def check_screening(self) -> Self:
-        """Raise `ValueError` where rest shapes do not repeat each stroke whatever the flow."""
-        control = self.control
         if self.search.screening is None:
             return self
-        if control.timer != "sine-cosine":
-            raise ValueError(
-                "`control.timer` must be 'sine-cosine' with `search.screening`, which predicts "
-                f"from one stroke, got {control.timer!r}"
-            )
+        control = self.control
+        refuse(
+            control.timer != "sine-cosine",
+            "control.timer",
+            "must be 'sine-cosine' with `search.screening`, which predicts "
+            f"from one stroke, got {control.timer!r}",
+        )
+        # Rest shapes that depend on the flow do not repeat each stroke, and screening sees one.
         for name in ("sense_energy", "recurrent"):
-            if getattr(control, name, False):
-                raise ValueError(
-                    f"`control.{name}` must be false with `search.screening`, which predicts "
-                    "from one stroke, got true"
-                )
+            refuse(
+                getattr(control, name, False),
+                f"control.{name}",
+                "must be false with `search.screening`, which predicts "
+                "from one stroke, got true",
+            )
         return self
 
     @property

@@ -3,14 +3,14 @@
 from collections.abc import Mapping
 from typing import Any, Literal, Self
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
-from .base import Part, field
+from ..invalid import InvalidField
+from .base import OURS, Part, field, refuse
 from .coupling import refuse_without_feasible
-from .creature import CreatureError, scene_of
+from .creature import CreatureError, alone, scene_of
 from .creature import check as checked
 from .search import Archive, refuse_flat_axes
-from .sources import OURS
 
 
 class Refinement(Part):
@@ -33,17 +33,25 @@ class Refinement(Part):
     segment: int | None = field(None, ge=1, unit="steps")
     """Steps that a gradient keeps in memory at a time, recomputing the others; empty: all."""
 
+    @field_validator("creature")
+    @classmethod
+    def leave_ancestors_out(cls, creature: dict[str, Any]) -> dict[str, Any]:
+        return alone(creature)
+
     @model_validator(mode="after")
     def check(self) -> Self:
         file = parsed(self.creature)
         encoding = file["identity"]["genome"]["encoding"]
-        if encoding in ("gait", "fold"):
-            raise ValueError(f"`creature` must have genes to refine, got a {encoding}")
+        refuse(
+            encoding in ("gait", "fold"),
+            "creature",
+            f"must have genes to refine, got a {encoding}",
+        )
         refuse_flat_axes(self.archive, "refinement")
         if self.archive.container is not None:
             kind = self.archive.container.kind
-            raise ValueError(
-                f"`archive.container` must be empty for a refinement, got {kind!r}"
+            raise InvalidField(
+                "archive.container", f"must be empty for a refinement, got {kind!r}"
             )
         if self.feasible:
             refuse_without_feasible(scene_of(file).coupling, "feasible")
@@ -60,8 +68,7 @@ def parsed(creature: Mapping[str, Any]) -> dict[str, Any]:
     try:
         return checked(creature)
     except CreatureError as error:
-        message = f"`creature.{error.field}` {error.needed}; got {error.got!r:.120}"
-        raise ValueError(message) from error
+        raise error.within("creature") from error
 
 
 PRESETS: dict[str, tuple[str, Refinement]] = {}

@@ -5,8 +5,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from .base import Part, field
-from .sources import PAPER
+from ..invalid import InvalidField
+from .base import PAPER, Part, field, refuse
 from .world import Steric
 
 Nodes = Annotated[int, Field(ge=20, le=2_000_000, json_schema_extra={"unit": "nodes"})]
@@ -41,18 +41,22 @@ class Scaling(Part):
 
     @model_validator(mode="after")
     def check(self) -> Self:
-        if list(self.nodes) != sorted(set(self.nodes)):
-            raise ValueError(f"`nodes` must ascend, got {list(self.nodes)}")
+        refuse(
+            list(self.nodes) != sorted(set(self.nodes)),
+            "nodes",
+            f"must ascend, got {list(self.nodes)}",
+        )
         if odd := [n for n in self.nodes if n % self.filament]:
-            raise ValueError(
-                f"`nodes` must be multiples of `filament` ({self.filament}), got {odd}"
+            raise InvalidField(
+                "nodes", f"must be multiples of `filament` ({self.filament}), got {odd}"
             )
         columns, rows = self.places
-        if max(self.nodes) > columns * rows * self.filament:
-            raise ValueError(
-                f"`nodes` must be at most {columns * rows * self.filament} in a box of "
-                f"{self.width} × {self.height}, got {max(self.nodes)}"
-            )
+        refuse(
+            max(self.nodes) > columns * rows * self.filament,
+            "nodes",
+            f"must be at most {columns * rows * self.filament} in a box of "
+            f"{self.width} × {self.height}, got {max(self.nodes)}",
+        )
         return self
 
     @property

@@ -1,4 +1,4 @@
-"""Aggregates over several tasks, as rliable has them: the interquartile mean, the probability
+"""Aggregates over several tasks, as in rliable: the interquartile mean, the probability
 of improvement, and performance profiles.
 
 Agarwal, Schwarzer, Castro, Courville and Bellemare, NeurIPS 2021, arXiv:2108.13264.
@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import rfc8785
 
+from ..invalid import InvalidField
 from .comparison import FEWEST
 from .effects import Bootstrap, middle_mean, superiority
-from .groups import Group, refuse_wrong
-from .measures import Measure
+from .groups import Group, devices, differences, refuse_wrong, versions
+from .measures import Measure, advice, apart, has_negative_fitness, refuse_other_schedules
 from .records import RunRecord
 
 POINTS = 101
@@ -57,6 +58,14 @@ class Aggregates:
     scores: tuple[float, ...]
     refusal: str
     bootstrap: Bootstrap
+    differences: dict[str, list[Any]]
+    """Fields other than the tasks' in which the specs of groups differ."""
+    versions: tuple[str, ...]
+    devices: tuple[str, ...]
+    """Versions and kinds of device of all runs."""
+    negative_fitness: bool
+    reevaluated: bool
+    """Whether some runs evaluate their elites again."""
 
 
 def across(
@@ -73,9 +82,7 @@ def across(
     refuse_wrong(groups, tasks)
     bootstrap = bootstrap or Bootstrap()
     measure = Measure.parse(measure) if isinstance(measure, str) else measure
-    if measure.reaches is not None:
-        raise ValueError(f"aggregates need the value of a curve, got {measure.text!r}")
-    split = [_by_task(group, tasks) for group in groups]
+    split = by_task(groups, measure, tasks)
     _refuse_unequal(groups, split, measure)
     keys = list(split[0])
     scores = _scores(split, keys, measure)
@@ -93,27 +100,35 @@ def across(
         for i, j in combinations(range(len(groups)), 2)
     )
     named = tuple({path: split[0][key][0].fields[path] for path in tasks} for key in keys)
-    points = tuple(along.tolist())
-    return Aggregates(measure, named, aggregates, improvements, points, refusal, bootstrap)
+    return Aggregates(
+        measure=measure,
+        tasks=named,
+        groups=aggregates,
+        improvements=improvements,
+        scores=tuple(along.tolist()),
+        refusal=refusal,
+        bootstrap=bootstrap,
+        differences=differences(groups, tasks),
+        versions=versions(groups),
+        devices=devices(groups),
+        negative_fitness=any(has_negative_fitness(run) for one in groups for run in one.runs),
+        reevaluated=any(run.is_reevaluated for one in groups for run in one.runs),
+    )
 
 
 Split = Mapping[tuple[str, ...], list[RunRecord]]
 """Runs by the values of the tasks' fields as canonical JSON, since some values are lists."""
 
 
-def _by_task(group: Group, tasks: Sequence[str]) -> Split:
-    found: dict[tuple[str, ...], list[RunRecord]] = {}
-    for run in group.runs:
-        missing = [path for path in tasks if path not in run.fields]
-        if missing:
-            raise ValueError(f"{run.name}: the spec has no field `{missing[0]}` for tasks")
-        found.setdefault(
-            tuple(rfc8785.dumps(run.fields[path]).decode() for path in tasks), []
-        ).append(run)
-    return found
+def by_task(groups: Sequence[Group], measure: Measure, tasks: Sequence[str]) -> list[Split]:
+    """Return the runs of each group by task.
 
-
-def _refuse_unequal(groups: Sequence[Group], split: Sequence[Split], measure: Measure) -> None:
+    Raises `ValueError` for a measure that has no value in each run, and where a group lacks a
+    task or has unequal numbers of runs.
+    """
+    if measure.reaches is not None:
+        raise ValueError(f"aggregates need the value of a curve, got {measure.text!r}")
+    split = [_by_task(group, tasks) for group in groups]
     first = split[0]
     for group, one in zip(groups, split, strict=True):
         if set(one) != set(first):
@@ -126,14 +141,33 @@ def _refuse_unequal(groups: Sequence[Group], split: Sequence[Split], measure: Me
             raise ValueError(
                 f"group {group.name!r} needs as many runs of every task, got {counts}"
             )
-    if measure.at is not None:
-        return
-    for task in first:
-        ends = {int(run.evaluations[-1]) for one in split for run in one[task]}
-        if len(ends) > 1:
-            raise ValueError(
-                f"`{measure.text}` needs runs with equal evaluations in a task, got "
-                f"{min(ends):,} and {max(ends):,}; compare at {measure.curve}@{min(ends)}"
+    return split
+
+
+def _by_task(group: Group, tasks: Sequence[str]) -> Split:
+    found: dict[tuple[str, ...], list[RunRecord]] = {}
+    for run in group.runs:
+        missing = [path for path in tasks if path not in run.fields]
+        if missing:
+            raise ValueError(f"{run.name}: the spec has no field `{missing[0]}` for tasks")
+        # 1 and 1.0 are one task (test_numbers_of_tasks_are_equal_in_any_form).
+        found.setdefault(
+            tuple(rfc8785.dumps(run.fields[path]).decode() for path in tasks), []
+        ).append(run)
+    return found
+
+
+def _refuse_unequal(groups: Sequence[Group], split: Sequence[Split], measure: Measure) -> None:
+    for task in split[0]:
+        runs = [run for one in split for run in one[task]]
+        refuse_other_schedules(runs, measure)
+        ends = {int(run.searched[-1]) for run in runs}
+        if measure.at is None and len(ends) > 1:
+            everywhere = [run for group in groups for run in group.runs]
+            raise InvalidField(
+                f"{measure.text}",
+                f"needs runs with equal evaluations{apart(runs)} in a task, got "
+                f"{min(ends):,} and {max(ends):,}{advice(everywhere, measure)}",
             )
 
 
@@ -147,8 +181,8 @@ def _scores(
     """Return scores by group, task and run, relative to the first group's median."""
     for run in (run for one in split for key in keys for run in one[key]):
         if np.isinf(measure.of(run)):
-            raise ValueError(
-                f"`{measure.text}` needs elites in every run, got none in {run.name}"
+            raise InvalidField(
+                f"{measure.text}", f"needs elites in every run, got none in {run.name}"
             )
     raw = [[np.array([measure.of(run) for run in one[key]]) for key in keys] for one in split]
     scales = [float(np.median(values)) for values in raw[0]]
@@ -205,8 +239,10 @@ def _band(
     drawn = [
         one[rng.integers(len(one), size=(bootstrap.resamples, len(one)))] for one in scores
     ]
-    shares = _profile(along)(*drawn)
-    low, high = np.quantile(shares, (0.025, 0.975), axis=1)
+    together = np.concatenate(drawn, axis=-1)
+    # One score after another: with many resamples all shares together take gigabytes.
+    bands = [np.quantile((together > one).mean(-1), (0.025, 0.975)) for one in along]
+    low, high = np.transpose(bands)
     return tuple(low.tolist()), tuple(high.tolist())
 
 
@@ -224,5 +260,6 @@ def _improvement(
         return np.mean([superiority(x, y, axis) for x, y in pairs], axis=0)
 
     samples = [*ours, *theirs]
-    interval = bootstrap.interval(samples, mean) if tested else None
+    pairs = max(len(x) * len(y) for x, y in zip(ours, theirs, strict=True))
+    interval = bootstrap.interval(samples, mean, pairs) if tested else None
     return Improvement(name, other, float(mean(*samples)), interval)

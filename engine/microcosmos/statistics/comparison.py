@@ -7,11 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from .effects import Bootstrap, middle_mean, quartiles, superiority
-from .groups import Group, differences, refuse_wrong
-from .measures import DEFAULT, Measure
+from ..invalid import InvalidField
+from .effects import (
+    Bootstrap,
+    Test,
+    holm,
+    kruskal_wallis,
+    mann_whitney,
+    middle_mean,
+    quartiles,
+    superiority,
+)
+from .groups import Group, differences, refuse_wrong, versions
+from .measures import DEFAULT, Measure, advice, apart, parsed, refuse_other_schedules
 from .records import RunRecord
-from .testing import Test, holm, kruskal_wallis, mann_whitney
 
 FEWEST = 5
 """Runs that each group needs for tests and intervals."""
@@ -60,7 +69,7 @@ class Result:
     measure: Measure
     summaries: tuple[Summary, ...]
     overall: Test | None
-    """Of more than two groups."""
+    """The test of all groups; None for two."""
     pairs: tuple[Pair, ...]
 
 
@@ -69,20 +78,19 @@ class Comparison:
     groups: tuple[Group, ...]
     results: tuple[Result, ...]
     refusal: str
-    """Why there are no tests; empty if there are."""
+    """The reason why there are no tests; empty if there are."""
     bootstrap: Bootstrap
     differences: dict[str, list[Any]] = field(default_factory=dict)
     """Fields in which the specs of groups differ, each with the value of every group."""
 
     @property
     def tests(self) -> int:
-        """The number of tests for which p is corrected."""
+        """Return the number of tests for which p is corrected."""
         return sum(len(result.pairs) for result in self.results)
 
     @property
     def versions(self) -> tuple[str, ...]:
-        runs = [run for group in self.groups for run in group.runs]
-        return tuple(dict.fromkeys(run.version for run in runs))
+        return versions(self.groups)
 
 
 def compare(
@@ -96,21 +104,25 @@ def compare(
     `ValueError` for a run that is unfinished or in two groups, for a group that has a seed
     twice or differs in more than the seed, and for runs compared at unequal evaluations.
     """
+    # Wrong groups first: their measures may not even exist.
     refuse_wrong(groups)
     bootstrap = bootstrap or Bootstrap()
-    asked = [Measure.parse(one) if isinstance(one, str) else one for one in measures]
+    distinct = parsed(measures)
+    if not distinct:
+        raise InvalidField("measures", "needs at least one measure, got none")
     runs = [run for group in groups for run in group.runs]
-    for measure in asked:
+    for measure in distinct:
         _refuse_unequal(runs, measure)
+        refuse_other_schedules(runs, measure)
     refusal = too_few(groups)
-    results = [_result(groups, measure, not refusal, bootstrap) for measure in asked]
+    results = [_result(groups, measure, not refusal, bootstrap) for measure in distinct]
     return Comparison(
         tuple(groups), _corrected(results), refusal, bootstrap, differences(groups)
     )
 
 
 def too_few(groups: Sequence[Group]) -> str:
-    """Return why there are no tests: too few groups, or too few runs in one; else nothing."""
+    """Return the reason for no tests: too few groups, or too few runs in one; else ""."""
     if len(groups) < 2:
         return f"Tests need at least 2 groups, got {len(groups)}."
     short = [group for group in groups if len(group.runs) < FEWEST]
@@ -121,24 +133,25 @@ def too_few(groups: Sequence[Group]) -> str:
 
 
 def _refuse_unequal(runs: Sequence[RunRecord], measure: Measure) -> None:
-    """Raise `ValueError` where the number of evaluations alone could order the runs."""
+    """Raise `ValueError` if the number of evaluations alone could order the runs."""
     if measure.reaches is not None:
         return _refuse_early(runs, measure)
     if measure.at is not None:
         return None
-    ends = {int(run.evaluations[-1]): run for run in reversed(runs)}
+    # Reversed, so that a message names the first run with each number.
+    ends = {int(run.searched[-1]): run for run in reversed(runs)}
     if len(ends) < 2:
         return None
     low, high = min(ends), max(ends)
-    raise ValueError(
-        f"`{measure.text}` needs runs with equal evaluations, got {low:,} in {ends[low].name} "
-        f"and {high:,} in {ends[high].name}; compare at a number that all reach, as "
-        f"{measure.curve}@{low}"
+    raise InvalidField(
+        f"{measure.text}",
+        f"needs runs with equal evaluations{apart(runs)}, got {low:,} in {ends[low].name} "
+        f"and {high:,} in {ends[high].name}{advice(runs, measure)}",
     )
 
 
 def _refuse_early(runs: Sequence[RunRecord], measure: Measure) -> None:
-    """Raise `ValueError` where a run ended before another one reached the value.
+    """Raise `ValueError` if a run ended before another one reached the value.
 
     With more evaluations it might have been the earlier of the two.
     """
@@ -147,13 +160,14 @@ def _refuse_early(runs: Sequence[RunRecord], measure: Measure) -> None:
     finite = [one for one in reached if one[0] < np.inf]
     if not missing or not finite:
         return
-    short = min(missing, key=lambda run: run.evaluations[-1])
+    short = min(missing, key=lambda run: run.searched[-1])
     latest, other = max(finite, key=lambda one: one[0])
-    if (end := short.evaluations[-1]) < latest:
-        raise ValueError(
-            f"`{measure.text}` needs equal evaluations where a run does not reach the value, "
+    if (end := short.searched[-1]) < latest:
+        raise InvalidField(
+            f"{measure.text}",
+            f"needs equal evaluations{apart(runs)} where a run does not reach the value, "
             f"got {short.name}, which ended at {end:,.0f} evaluations without reaching it, and "
-            f"{other.name}, which reached it at {latest:,.0f}"
+            f"{other.name}, which reached it at {latest:,.0f}",
         )
 
 
@@ -195,12 +209,13 @@ def _pair(
     (name, ours), (other, theirs) = first, second
     test = mann_whitney(ours, theirs)
     share = float(superiority(ours, theirs))
-    interval = bootstrap.interval([ours, theirs], superiority)
+    interval = bootstrap.interval([ours, theirs], superiority, len(ours) * len(theirs))
     return Pair(name, other, test, test.p, share, interval)
 
 
 def _corrected(results: Sequence[Result]) -> tuple[Result, ...]:
     """Return the results with p of all pairs corrected for their number."""
+    # All pairs of all measures are one family of tests (docs/statistics.md).
     corrected = iter(holm([pair.test.p for result in results for pair in result.pairs]))
     return tuple(
         replace(one, pairs=tuple(replace(pair, p=next(corrected)) for pair in one.pairs))

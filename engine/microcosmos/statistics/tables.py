@@ -18,6 +18,8 @@ Cells = list[list[str]]
 GROUPS = ("measure", "group", "n", "median", "quartiles", "IQM", "95 %")
 PAIRS = ("measure", "first", "second", "U", "p", "p (Holm)", "A12", "95 %")
 OVERALL = ("measure", "groups", "H", "p")
+MEANS = ("measure", "group", "runs", "IQM", "95 %")
+IMPROVEMENTS = ("measure", "first", "second", "P(first > second)", "95 %")
 INTERVALS = ("quartiles", "95 %")
 """Columns with two numbers in a cell."""
 RANGE = re.compile(r"[\d.,e+]+ to [\d.,e+]+")
@@ -32,7 +34,7 @@ COLUMNS = (
 """Columns of the CSV: one row for each group, test and run, with empty cells."""
 
 
-def group_rows(found: Comparison) -> Cells:
+def group_rows(comparison: Comparison) -> Cells:
     """Return a row for each measure and group, under `GROUPS`."""
     return [
         [
@@ -44,12 +46,12 @@ def group_rows(found: Comparison) -> Cells:
             wording.number(one.middle_mean),
             wording.interval(one.interval),
         ]
-        for result in found.results
+        for result in comparison.results
         for one in result.summaries
     ]
 
 
-def pair_rows(found: Comparison) -> Cells:
+def pair_rows(comparison: Comparison) -> Cells:
     """Return a row for each measure and pair of groups, under `PAIRS`."""
     return [
         [
@@ -62,32 +64,44 @@ def pair_rows(found: Comparison) -> Cells:
             f"{pair.superiority:.2f}",
             f"{pair.interval[0]:.2f} to {pair.interval[1]:.2f}",
         ]
-        for result in found.results
+        for result in comparison.results
         for pair in result.pairs
     ]
 
 
-def overall_rows(found: Comparison) -> Cells:
+def overall_rows(comparison: Comparison) -> Cells:
     """Return a row for each measure's test over all groups, under `OVERALL`."""
     return [
         [
             result.measure.title,
-            str(len(found.groups)),
+            str(len(comparison.groups)),
             f"{result.overall.statistic:.4g}",
             wording.probability(result.overall.p),
         ]
-        for result in found.results
+        for result in comparison.results
         if result.overall
     ]
 
 
-def text(found: Comparison) -> str:
+def _tables(comparison: Comparison) -> list[tuple[Sequence[str], Cells, str]]:
+    """Return titles, rows and LaTeX columns of the tables that have rows."""
+    tables = [
+        (GROUPS, group_rows(comparison), "llrrrrr"),
+        (OVERALL, overall_rows(comparison), "lrrr"),
+        (PAIRS, pair_rows(comparison), "lllrrrrr"),
+    ]
+    return [one for one in tables if one[1]]
+
+
+def _sentences(comparison: Comparison) -> list[str]:
+    stated = [wording.groups(comparison), wording.method(comparison)]
+    return stated + wording.cautions(comparison)
+
+
+def text(comparison: Comparison) -> str:
     """Return tables for a terminal, then sentences on groups, tests and intervals."""
-    parts = [_aligned(GROUPS, group_rows(found))]
-    for titles, rows in ((OVERALL, overall_rows(found)), (PAIRS, pair_rows(found))):
-        parts += [_aligned(titles, rows)] if rows else []
-    parts += [wording.groups(found), wording.method(found), *wording.cautions(found)]
-    return "\n\n".join(parts) + "\n"
+    parts = [_aligned(titles, rows) for titles, rows, _ in _tables(comparison)]
+    return "\n\n".join(parts + _sentences(comparison)) + "\n"
 
 
 def _aligned(titles: Sequence[str], rows: Cells) -> str:
@@ -99,18 +113,18 @@ def _aligned(titles: Sequence[str], rows: Cells) -> str:
     )
 
 
-def csv(found: Comparison) -> str:
+def csv(comparison: Comparison) -> str:
     """Return a row for each group, test and run, with full precision."""
     text = StringIO()
     writer = csv_module.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
     writer.writeheader()
-    for result in found.results:
+    for result in comparison.results:
         measure = {"measure": result.measure.text}
         writer.writerows(measure | _summary(one) for one in result.summaries)
         if result.overall:
             writer.writerow(measure | {"table": "all groups"} | vars_of(result.overall))
         writer.writerows(measure | _pair(pair) for pair in result.pairs)
-        writer.writerows(measure | row for row in _runs(found, result))
+        writer.writerows(measure | row for row in _runs(comparison, result))
     return text.getvalue()
 
 
@@ -140,15 +154,15 @@ def vars_of(test: Any) -> dict[str, Any]:
     return {"test": test.name, "statistic": test.statistic, "p": test.p}
 
 
-def _runs(found: Comparison, result: Result) -> list[dict[str, Any]]:
+def _runs(comparison: Comparison, result: Result) -> list[dict[str, Any]]:
     return [
         {"table": "run", "group": group.name, "run": run.name, "seed": run.seed, "value": value}
-        for group, one in zip(found.groups, result.summaries, strict=True)
+        for group, one in zip(comparison.groups, result.summaries, strict=True)
         for run, value in zip(group.runs, one.values, strict=True)
     ]
 
 
-def document(found: Comparison) -> dict[str, Any]:
+def document(comparison: Comparison) -> dict[str, Any]:
     """Return all of a comparison as JSON's values; null where a run does not reach a value, or
     has no elites."""
     return {
@@ -158,17 +172,20 @@ def document(found: Comparison) -> dict[str, Any]:
                 "n": len(group.runs),
                 "runs": [{"run": run.name, "seed": run.seed} for run in group.runs],
             }
-            for group in found.groups
+            for group in comparison.groups
         ],
-        "differences": found.differences,
-        "measures": [_result(result) for result in found.results],
-        "refusal": found.refusal or None,
-        "groups_in_words": wording.groups(found),
-        "method": wording.method(found),
-        "cautions": wording.cautions(found),
-        "tests": found.tests,
-        "bootstrap": {"resamples": found.bootstrap.resamples, "seed": found.bootstrap.seed},
-        "versions": list(found.versions),
+        "differences": comparison.differences,
+        "measures": [_result(result) for result in comparison.results],
+        "refusal": comparison.refusal or None,
+        "groups_in_words": wording.groups(comparison),
+        "method": wording.method(comparison),
+        "cautions": wording.cautions(comparison),
+        "tests": comparison.tests,
+        "bootstrap": {
+            "resamples": comparison.bootstrap.resamples,
+            "seed": comparison.bootstrap.seed,
+        },
+        "versions": list(comparison.versions),
     }
 
 
@@ -195,20 +212,15 @@ def _plain(value: Any) -> Any:
     return None if value == "" else value
 
 
-def json(found: Comparison) -> str:
-    return json_module.dumps(document(found), indent=1, ensure_ascii=False) + "\n"
+def json(comparison: Comparison) -> str:
+    return json_module.dumps(document(comparison), indent=1, ensure_ascii=False) + "\n"
 
 
-def latex(found: Comparison) -> str:
+def latex(comparison: Comparison) -> str:
     """Return tables for LaTeX with booktabs, and the caption as a comment."""
-    parts = [_tabular(GROUPS, group_rows(found), "llrrrrr")]
-    if overall := overall_rows(found):
-        parts.append(_tabular(OVERALL, overall, "lrrr"))
-    if pairs := pair_rows(found):
-        parts.append(_tabular(PAIRS, pairs, "lllrrrrr"))
-    said = " ".join([wording.groups(found), wording.method(found), *wording.cautions(found)])
-    head = f"% \\usepackage{{booktabs}}\n% \\caption{{{escaped(said)}}}\n"
-    return head + "\n\n".join(parts) + "\n"
+    parts = [_tabular(*one) for one in _tables(comparison)]
+    caption = escaped(" ".join(_sentences(comparison)))
+    return f"% \\usepackage{{booktabs}}\n% \\caption{{{caption}}}\n" + "\n\n".join(parts) + "\n"
 
 
 def _tabular(titles: Sequence[str], rows: Cells, columns: str) -> str:
@@ -233,16 +245,16 @@ def _cell(text: str, title: str, column: str) -> str:
     """Return a cell for LaTeX; columns on the right have numbers, all others words."""
     if column == "l":
         return escaped(text)
-    found = escaped(text.replace("< ", "<")).replace("-", "$-$")
+    # In text mode LaTeX sets a minus as a hyphen (test_latex_keeps_minus_signs_and_words).
+    cell = escaped(text.replace("< ", "<")).replace("-", "$-$")
     if title in INTERVALS and RANGE.fullmatch(text):
-        found = found.replace(" to ", "--")
-    return found
+        cell = cell.replace(" to ", "--")
+    return cell
 
 
-def aggregates_text(several: Sequence[Aggregates]) -> str:
-    """Return tables for a terminal: the mean of the middle half, and improvements."""
-    titles = ("measure", "group", "runs", "IQM", "95 %")
-    rows = [
+def mean_rows(several: Sequence[Aggregates]) -> Cells:
+    """Return a row for each measure and group over all tasks, under `MEANS`."""
+    return [
         [
             found.measure.title,
             one.group,
@@ -253,8 +265,11 @@ def aggregates_text(several: Sequence[Aggregates]) -> str:
         for found in several
         for one in found.groups
     ]
-    parts = [_aligned(titles, rows)]
-    improved = [
+
+
+def improvement_rows(several: Sequence[Aggregates]) -> Cells:
+    """Return a row for each measure and pair of groups, under `IMPROVEMENTS`."""
+    return [
         [
             found.measure.title,
             one.first,
@@ -265,13 +280,20 @@ def aggregates_text(several: Sequence[Aggregates]) -> str:
         for found in several
         for one in found.improvements
     ]
-    if improved:
-        named = ("measure", "first", "second", "P(first > second)", "95 %")
-        parts.append(_aligned(named, improved))
-    return "\n\n".join([*parts, wording.aggregated(several[0])]) + "\n"
+
+
+def aggregates_text(several: Sequence[Aggregates]) -> str:
+    """Return tables for a terminal: the mean of the middle half, and improvements."""
+    tables = ((MEANS, mean_rows(several)), (IMPROVEMENTS, improvement_rows(several)))
+    parts = [_aligned(titles, rows) for titles, rows in tables if rows]
+    return "\n\n".join([*parts, wording.aggregated(*several)]) + "\n"
 
 
 def aggregates_json(several: Sequence[Aggregates]) -> str:
     """Return all of the aggregates as JSON, with the performance profiles."""
-    found = [asdict(one) | {"measure": one.measure.text} for one in several]
-    return json_module.dumps(found, indent=1, ensure_ascii=False) + "\n"
+    documents = [
+        asdict(one)
+        | {"measure": one.measure.text, "cautions": wording.cautions_over_tasks([one])}
+        for one in several
+    ]
+    return json_module.dumps(documents, indent=1, ensure_ascii=False) + "\n"

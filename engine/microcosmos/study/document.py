@@ -1,17 +1,25 @@
-"""The file of a study, as YAML or JSON; errors name the field."""
+"""The file of a study, as YAML or JSON, parsed strictly; errors name the field."""
 
+import re
+from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, StrictInt, ValidationError, field_validator, model_validator
 
+from ..invalid import InvalidField, invalid_field
+from ..json_text import read_json, refuse_repeated
+from ..optional import require
 from ..spec.base import Part, field_path
+from ..statistics.effects import MAX_RESAMPLES
 from ..statistics.measures import DEFAULT, Measure
-from . import once
 
 Name = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[A-Za-z0-9][\w .+-]*$")]
 Export = Literal["csv", "json", "latex", "archive-csv", "poses-npz"]
 MAX_RUNS = 1000
+MAX_NODES = 100_000
+"""Most values of a study in YAML, those of an alias wherever it stands."""
 
 
 class Sweep(Part):
@@ -26,7 +34,8 @@ class Sweep(Part):
     )
     """Lists of values by the dotted path of a field."""
     seeds: (
-        Annotated[int, Field(ge=1, le=MAX_RUNS)] | Annotated[list[int], Field(min_length=1)]
+        Annotated[StrictInt, Field(ge=1, le=MAX_RUNS)]
+        | Annotated[list[StrictInt], Field(min_length=1)]
     ) = 5
     """A number of seeds, which starts with the spec's own, or a list of seeds."""
 
@@ -62,7 +71,10 @@ class Comparison(Part):
     @classmethod
     def refuse_unknown(cls, measures: tuple[str, ...]) -> tuple[str, ...]:
         for text in measures:
-            Measure.parse(text)
+            try:
+                Measure.parse(text)
+            except InvalidField as error:  # The path of this field names it.
+                raise ValueError(error.reason) from error
         return measures
 
 
@@ -75,14 +87,14 @@ class Figure(Part):
     """The comparison; needed where there are several."""
     field: str = ""
     """For `parameter`: the field of the spec."""
-    shown: tuple[str, ...] = ("best", "coverage", "qd_score")
+    shown: Annotated[tuple[str, ...], Field(min_length=1)] = ("best", "coverage", "qd_score")
     """For `curves`: the curves."""
 
     @model_validator(mode="after")
     def refuse_without_field(self) -> Self:
         if (self.kind == "parameter") != bool(self.field):
-            needed = "needs" if self.kind == "parameter" else "has no"
-            raise ValueError(f"a figure `{self.kind}` {needed} `field`, got {self.field!r}")
+            needed = "is needed by" if self.kind == "parameter" else "must be empty for"
+            raise InvalidField("field", f"{needed} a figure `{self.kind}`, got {self.field!r}")
         return self
 
 
@@ -96,7 +108,7 @@ class Study(Part):
     comparisons: dict[Name, Comparison] = Field(min_length=1)
     figures: tuple[Figure, ...] = ()
     exports: tuple[Export, ...] = ()
-    resamples: int = Field(default=9999, ge=99)
+    resamples: StrictInt = Field(default=9999, ge=99, le=MAX_RESAMPLES)
     """Resamples of the bootstrap, whose seed is 0."""
 
     @model_validator(mode="after")
@@ -106,9 +118,10 @@ class Study(Part):
         for name in self.comparisons:
             other = files.setdefault(file_of(name), name)
             if other != name:
-                raise ValueError(
-                    "`comparisons` needs names of different files, got "
-                    f"{other!r} and {name!r}, which are both {file_of(name)!r}"
+                raise InvalidField(
+                    "comparisons",
+                    "needs names of different files, got "
+                    f"{other!r} and {name!r}, which are both {file_of(name)!r}",
                 )
         return self
 
@@ -124,7 +137,7 @@ class Study(Part):
                 _refuse_unknown(f"figures.{number}.of", figure.of, self.comparisons)
             elif len(self.comparisons) > 1:
                 needed = ", ".join(self.comparisons)
-                raise ValueError(f"`figures.{number}.of` must be one of {needed}, got none")
+                raise InvalidField(f"figures.{number}.of", f"must be one of {needed}, got none")
             self._refuse_aggregate(number, figure)
         return self
 
@@ -132,11 +145,12 @@ class Study(Part):
         """Raise `ValueError` where a figure needs tasks, or is of a comparison with tasks."""
         tasks = self.comparison_of(figure)[1].tasks
         if figure.kind == "profile" and not tasks:
-            raise ValueError(f"`figures.{number}`: a profile needs a comparison with `tasks`")
-        if figure.kind in ("box", "parameter") and tasks:
-            raise ValueError(
-                f"`figures.{number}`: a {figure.kind} needs a comparison without `tasks`"
-            )
+            needed = "with `tasks` for a figure `profile`"
+            raise InvalidField(f"figures.{number}", f"needs a comparison {needed}")
+        # Over tasks, a median of curves would be neither over seeds nor over equal scales.
+        if figure.kind in ("curves", "box", "parameter") and tasks:
+            needed = f"without `tasks` for a figure `{figure.kind}`"
+            raise InvalidField(f"figures.{number}", f"needs a comparison {needed}")
 
     def comparison_of(self, figure: Figure) -> tuple[str, Comparison]:
         """Return the name of a figure's comparison, and the comparison."""
@@ -151,31 +165,123 @@ def file_of(comparison: str) -> str:
 
 def _refuse_unknown(field: str, name: str, known: Any) -> None:
     if name not in known:
-        raise ValueError(f"`{field}` must be one of {', '.join(known)}, got {name!r}")
+        raise InvalidField(field, f"must be one of {', '.join(known)}, got {name!r}")
 
 
 def read(path: Path) -> Study:
     """Return the study in a file. Raises `ValueError`, which names the fields that are wrong,
     and `ImportError` where YAML needs the extra `studies`."""
-    return parse(path.read_text(), path.suffix.lower() == ".json")
+    return decode(path.read_bytes(), path.name)
+
+
+def decode(data: bytes, name: str) -> Study:
+    """Return the study in the bytes of a file with this name; see `read`."""
+    try:
+        text = data.decode()
+    except UnicodeDecodeError:
+        raise ValueError("a study must be a text in UTF-8, YAML or JSON; got other") from None
+    return parse(text, name.lower().endswith(".json"))
 
 
 def parse(text: str, is_json: bool = False) -> Study:
     """Return the study in a text; see `read`."""
     try:
-        return Study.model_validate(once.json(text) if is_json else once.yaml(text))
+        return Study.model_validate(read_json(text) if is_json else yaml(text))
     except ValidationError as error:
-        raise ValueError("\n".join(_message(one) for one in error.errors())) from error
+        invalid = (invalid_field(one, _path(one["loc"])) for one in error.errors())
+        raise ValueError("\n".join(map(str, invalid))) from error
 
 
-def _message(error: Any) -> str:
-    needed = str(error["msg"]).removeprefix("Value error, ")
-    field = field_path([part for part in error["loc"] if not _is_tag(part)])
-    got = "" if "got" in needed else f"; got {error['input']!r:.80}"
-    return f"{field}: {needed}{got}" if field else f"{needed}{got}"
+def _path(location: Sequence[str | int]) -> str:
+    return field_path([part for part in location if not _is_tag(part)])
 
 
 def _is_tag(part: Any) -> bool:
     """Return whether pydantic added a part of a path, to tell the members of a union apart."""
+    # Pydantic names the members of a union in the path of an error, which people did not write.
     text = str(part)
     return "[" in text or text in ("int", "str", "constrained-int")
+
+
+SCALARS = {
+    "null": r"~|null|Null|NULL|",
+    "bool": r"true|True|TRUE|false|False|FALSE",
+    "int": r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+",
+    "float": r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?"
+    r"|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)",
+    "merge": r"<<",
+}
+"""Text without quotes that is no text: the core schema of YAML 1.2, and `<<` of 1.1. PyYAML
+follows 1.1, where `yes` is true, `010` is 8, `1:30` is 90 and `1e-2` is text."""
+TAG = "tag:yaml.org,2002:"
+BASES = {"0o": 8, "0x": 16}
+
+
+def yaml(text: str) -> Any:
+    """Return the document in a text. Raises `ValueError` for a name that is given twice, and
+    `ImportError` without the extra `studies`."""
+    library = require("yaml", "microcosmos[studies]")
+    try:
+        loader = _loader(library)(text)
+        node = loader.get_single_node()
+    except library.YAMLError as error:
+        raise ValueError(f"a study must be YAML or JSON: {error}") from error
+    _check(library, node, "", set())
+    # A few lines of aliases of aliases would take hours.
+    if node is not None and _nodes(node, {}) > MAX_NODES:
+        raise ValueError(f"a study must have at most {MAX_NODES:,} values with its aliases")
+    try:
+        return None if node is None else loader.construct_document(node)
+    # A tag such as `!!int` before text that is no integer ends in the latter two.
+    except (library.YAMLError, ValueError, KeyError) as error:
+        raise ValueError(f"a study must be YAML or JSON: {error}") from error
+
+
+def _nodes(node: Any, known: dict[int, float]) -> float:
+    """Return the values at and below a node; infinite for one that leads to itself."""
+    if id(node) not in known:
+        known[id(node)] = inf  # Of a node that is met below itself.
+        below = [] if isinstance(node.value, str) else node.value
+        pairs = (one if isinstance(one, tuple) else (one,) for one in below)
+        known[id(node)] = 1 + sum(_nodes(one, known) for pair in pairs for one in pair)
+    return known[id(node)]
+
+
+def _loader(library: Any) -> Any:
+    """Return PyYAML's loader with the scalars of `SCALARS`, and neither dates nor sets."""
+    known = library.SafeLoader.yaml_constructors
+    kinds = [None, *(TAG + name for name in (*SCALARS, "str", "seq", "map"))]
+    parts = {
+        "yaml_implicit_resolvers": {},
+        "yaml_constructors": {kind: known[kind] for kind in kinds if kind in known},
+    }
+    # A class of its own: resolvers belong to the class, and PyYAML's must not change.
+    made: Any = type("Loader", (library.SafeLoader,), parts)
+    for name, pattern in SCALARS.items():
+        made.add_implicit_resolver(TAG + name, re.compile(rf"({pattern})\Z"), None)
+    made.add_constructor(TAG + "int", lambda _, node: _integer(node.value))
+    return made
+
+
+def _integer(text: str) -> int:
+    return int(text, BASES.get(text[:2], 10))
+
+
+def _check(library: Any, node: Any, path: str, seen: set[int]) -> None:
+    """Refuse names that are given twice; aliases lead to a node again, also to one above."""
+    if id(node) in seen:
+        return
+    seen.add(id(node))
+    if isinstance(node, library.MappingNode):
+        named = [(key.value, one) for key, one in node.value if _is_name(library, key)]
+        refuse_repeated([name for name, _ in named], path)
+        for name, one in named:
+            _check(library, one, f"{path}{name}.", seen)
+    elif isinstance(node, library.SequenceNode):
+        for i, one in enumerate(node.value):
+            _check(library, one, f"{path}{i}.", seen)
+
+
+def _is_name(library: Any, key: Any) -> bool:
+    """Return whether a key is a name, and not `<<`, which merges mappings."""
+    return isinstance(key, library.ScalarNode) and not key.tag.endswith(":merge")

@@ -62,9 +62,9 @@ class Number:
 
     def html(self) -> str:
         to = f"run-{self.runs[0]}" if len(self.runs) == 1 else self.anchor
-        said = ("run " if len(self.runs) == 1 else "runs ") + ", ".join(self.runs)
+        title = ("run " if len(self.runs) == 1 else "runs ") + ", ".join(self.runs)
         return (
-            f'<td class="n"><a href="#{escape(to)}" title="{escape(said)}" '
+            f'<td class="n"><a href="#{escape(to)}" title="{escape(title)}" '
             f'data-runs="{" ".join(self.runs)}">{escape(self.text)}</a></td>'
         )
 
@@ -126,6 +126,7 @@ def figure(svg: bytes, caption: str, alternative: str, single: bool) -> str:
     """Return a figure whose drawing is part of the page."""
     data = base64.b64encode(svg).decode()
     kind = ' class="single"' if single else ""
+    # The report is one file, which needs no network (test_the_page_needs_no_network).
     source = f"data:image/svg+xml;base64,{data}"
     return (
         f'<figure{kind}><img alt="{escape(alternative)}" src="{source}">'

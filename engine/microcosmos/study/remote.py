@@ -1,6 +1,7 @@
 """Carry out the runs of a study on a server, and download their files."""
 
 import hashlib
+import json
 import time
 from collections.abc import Callable
 
@@ -10,6 +11,8 @@ from .runs import SHORT, Plan, PlannedRun, identity
 
 PAUSE = 2.0
 """Seconds between two looks at the sweeps."""
+NAME_LENGTH = 200
+"""Longest name of a sweep on a server."""
 
 Tell = Callable[[dict[str, int]], None]
 """Called with the number of runs by status."""
@@ -18,11 +21,12 @@ Tell = Callable[[dict[str, int]], None]
 def carry_out(plan: Plan, client: Client, tell: Tell = lambda counts: None) -> None:
     """Queue the sweeps of a study, wait for them, and download runs whose files are missing.
 
-    The same study again is the same sweeps: their keys are the identities of their runs. Raises
-    `ValueError` where runs have ended without finishing.
+    The same study again is the same sweeps, also with another title. Raises `ValueError` where
+    runs have ended without finishing.
     """
     missing = {run.id: run for run in plan.unique() if not run.done()[1]}
-    names = [name for name in plan.study.sweeps if _of(plan, name, missing)]
+    wanted = {run.sweep for run in plan.runs if run.id in missing}
+    names = [name for name in plan.study.sweeps if name in wanted]
     sweeps = [_submitted(plan, name, client) for name in names]
     while not all(sweep.ended for sweep in sweeps):
         tell(_counted(sweeps))
@@ -36,23 +40,18 @@ def carry_out(plan: Plan, client: Client, tell: Tell = lambda counts: None) -> N
         raise ValueError(f"all runs must finish; {client.url} has no finished run {listed}")
 
 
-def _of(plan: Plan, name: str, missing: dict[str, PlannedRun]) -> bool:
-    return any(run.sweep == name and run.id in missing for run in plan.runs)
-
-
 def _submitted(plan: Plan, name: str, client: Client) -> Sweep:
-    sweep, runs = plan.study.sweeps[name], [run for run in plan.runs if run.sweep == name]
-    seeds = list(dict.fromkeys(run.spec.seed for run in runs))
-    key = hashlib.sha256("\n".join(identity(run.spec) for run in runs).encode()).hexdigest()
-    made = client.submit(
-        plan.bases[name].model_dump(mode="json"),
-        seeds=seeds,
-        grid=sweep.grid,
-        name=f"{plan.study.title}: {name}",
-        key=f"study-{key}",
-    )
+    seeds = list(dict.fromkeys(run.spec.seed for run in plan.runs if run.sweep == name))
+    spec, grid = plan.bases[name].model_dump(mode="json"), plan.study.sweeps[name].grid
+    # The server answers a repeated key with the sweep that it has, if all else is equal too
+    # (test_a_repeated_study_asks_for_the_same_sweep_and_nothing_once_it_is_there).
+    sent = json.dumps([name, spec, seeds, list(grid.items())], sort_keys=True)
+    key = f"study-{hashlib.sha256(sent.encode()).hexdigest()}"
+    made = client.submit(spec, seeds=seeds, grid=grid, name=name, key=key)
     assert isinstance(made, Sweep)  # Seeds are given.
-    return made
+    # The title later, since a corrected one must not make another request.
+    title = f"{plan.study.title[: NAME_LENGTH - len(name) - 2]}: {name}"
+    return made if made.name == title else made.change(name=title)
 
 
 def _counted(sweeps: list[Sweep]) -> dict[str, int]:

@@ -11,34 +11,36 @@ import numpy
 import scipy
 
 from ..archive.atomic import write_whole
-from ..spec.differences import value_text
+from ..spec.paths import value_text
 from ..statistics import Group, tables, wording
 from ..statistics.measures import Measure
 from ..version import VERSION
-from . import exports, figures, markup
+from . import figures, markup, written
 from .figures import Picture
 from .markup import Cell, Link, Number
-from .results import Compare, Results, gather
+from .results import Compare, Results, exports, gather
 from .runs import Plan, PlannedRun
 
 FILE = "report.html"
 
 
-def write(plan: Plan, source: str, command: str) -> list[Path]:
+def write(plan: Plan, source: bytes, command: str) -> list[Path]:
     """Make the report of a study whose runs are finished, its figures and exports.
 
-    `source` is the text of the study's file, `command` the line that repeats it. The same runs
-    give the same bytes. Return the paths, the report first.
+    `source` is the content of the study's file as it was planned, `command` the line that
+    repeats it. The same runs give the same bytes. Figures and exports that the study no longer
+    has are removed. Return the paths, the report first.
     """
     results = gather(plan)
+    # Before anything is written: a figure that fails leaves the last report whole.
     pictures = figures.draw(results)
     report = plan.folder / FILE
     write_whole(report, render(results, pictures, source, command).encode())
-    drawn = figures.save(pictures, plan.folder / "figures")
-    return [report, *drawn, *exports.save(results, plan.folder / "exports")]
+    made = {"figures": figures.files(pictures), "exports": exports(results)}
+    return [report, *written.write(plan.folder, made)]
 
 
-def render(results: Results, pictures: Sequence[Picture], source: str, command: str) -> str:
+def render(results: Results, pictures: Sequence[Picture], source: bytes, command: str) -> str:
     """Return the report as HTML."""
     study = results.plan.study
     body = [markup.heading(study.title, level=1)]
@@ -65,24 +67,24 @@ def _summary(results: Results) -> str:
 def _comparison(number: int, one: Compare, pictures: Sequence[Picture]) -> list[str]:
     body = [markup.heading(one.name, f"comparison-{number}")]
     if one.statistics:
-        found = one.statistics
-        body.append(markup.paragraph(wording.difference(found)))
+        statistics = one.statistics
+        body.append(markup.paragraph(wording.difference(statistics)))
         body += _tables(number, one)
-        body += [markup.paragraph(wording.method(found), quiet=True)]
-        body += [markup.paragraph(text, quiet=True) for text in wording.cautions(found)]
+        body += [markup.paragraph(wording.method(statistics), quiet=True)]
+        body += [markup.paragraph(text, quiet=True) for text in wording.cautions(statistics)]
     else:
         body += _aggregates(number, one)
     for picture in pictures:
-        said = f"{picture.kind} of {picture.of}"
-        body.append(markup.figure(picture.svg, picture.caption, said, not picture.wide))
+        name = f"{picture.kind} of {picture.of}"
+        body.append(markup.figure(picture.svg, picture.caption, name, not picture.wide))
     body += _values(number, one)
     return body
 
 
 def _tables(number: int, one: Compare) -> list[str]:
     """Return the tables of groups and tests; all numbers carry the runs of their groups."""
-    found = one.statistics
-    assert found
+    statistics = one.statistics
+    assert statistics
     ids = {group.name: _ids(group) for group in one.groups}
     anchors = {group.name: f"c{number}-g{i}" for i, group in enumerate(one.groups, 1)}
     everything = tuple(id for runs in ids.values() for id in runs)
@@ -101,23 +103,23 @@ def _tables(number: int, one: Compare) -> list[str]:
         names = [Link(name, anchors[name]) for name in (first, second)]
         return [measure, *names, *(Number(text, both, anchor) for text in numbers)]
 
-    summaries = [one for result in found.results for one in result.summaries]
+    summaries = [one for result in statistics.results for one in result.summaries]
     rows = [
         of_group(row, summary.values, summary.median)
-        for row, summary in zip(tables.group_rows(found), summaries, strict=True)
+        for row, summary in zip(tables.group_rows(statistics), summaries, strict=True)
     ]
     parts = [markup.table(tables.GROUPS, _named_once(rows))]
     overall = [
         [row[0], *(Number(text, everything, f"c{number}") for text in row[1:])]
-        for row in tables.overall_rows(found)
+        for row in tables.overall_rows(statistics)
     ]
-    pairs = [of_pair(row) for row in tables.pair_rows(found)]
+    pairs = [of_pair(row) for row in tables.pair_rows(statistics)]
     parts += [markup.table(tables.OVERALL, overall)] if overall else []
     return parts + ([markup.table(tables.PAIRS, _named_once(pairs))] if pairs else [])
 
 
 def _named_once(rows: list[list[Cell]]) -> list[list[Cell]]:
-    """Return the rows with each measure in the first of its rows alone."""
+    """Return the rows; only the first row of a measure names it."""
     before = ["", *(row[0] for row in rows)]
     return [
         ["" if row[0] == above else row[0], *row[1:]]
@@ -126,30 +128,24 @@ def _named_once(rows: list[list[Cell]]) -> list[list[Cell]]:
 
 
 def _aggregates(number: int, one: Compare) -> list[str]:
-    ids = {group.name: _ids(group) for group in one.groups}
-    means, improved = [], []
-    for found in one.aggregates:
-        for group in found.groups:
-            texts = (str(group.runs), wording.number(group.middle_mean))
-            texts += (wording.interval(group.interval),)
-            cells = [Number(text, ids[group.group], f"c{number}") for text in texts]
-            means.append([found.measure.title, group.group, *cells])
-        for pair in found.improvements:
-            both = ids[pair.first] + ids[pair.second]
-            texts = (f"{pair.probability:.2f}", wording.interval(pair.interval))
-            cells = [Number(text, both, f"c{number}") for text in texts]
-            improved.append([found.measure.title, pair.first, pair.second, *cells])
+    ids, anchor = {group.name: _ids(group) for group in one.groups}, f"c{number}"
+    means = [
+        [measure, group, *(Number(text, ids[group], anchor) for text in numbers)]
+        for measure, group, *numbers in tables.mean_rows(one.aggregates)
+    ]
+    improved = [
+        [measure, a, b, *(Number(text, ids[a] + ids[b], anchor) for text in numbers)]
+        for measure, a, b, *numbers in tables.improvement_rows(one.aggregates)
+    ]
     parts = [markup.table(("measure", "group", "n", "IQM", "95 %"), means)]
-    if improved:
-        named = ("measure", "first", "second", "P(first > second)", "95 %")
-        parts.append(markup.table(named, improved))
-    return [*parts, markup.paragraph(wording.aggregated(one.aggregates[0]), quiet=True)]
+    parts += [markup.table(tables.IMPROVEMENTS, improved)] if improved else []
+    return [*parts, markup.paragraph(wording.aggregated(*one.aggregates), quiet=True)]
 
 
 def _values(number: int, one: Compare) -> list[str]:
     """Return a table of every run's values, whose rows are also the lists of the groups."""
-    found = one.statistics
-    results = found.results if found else ()
+    statistics = one.statistics
+    results = statistics.results if statistics else ()
     rows: list[list[Cell]] = []
     anchors = []
     for place, group in enumerate(one.groups):
@@ -196,11 +192,11 @@ def _specs(results: Results) -> list[str]:
         sweep = results.plan.study.sweeps[name]
         given = sweep.spec if isinstance(sweep.spec, str) else "the spec in the study's file"
         seeds = sorted({run.spec.seed for run in results.plan.runs if run.sweep == name})
-        said = [f"{name}: {given}, seeds {', '.join(map(str, seeds))}"]
-        said += [f"{path} {value_text(value)}" for path, value in sweep.set.items()]
+        parts = [f"{name}: {given}, seeds {', '.join(map(str, seeds))}"]
+        parts += [f"{path} {value_text(value)}" for path, value in sweep.set.items()]
         for path, values in sweep.grid.items():
-            said.append(f"{path} of {', '.join(map(value_text, values))}")
-        body.append(markup.paragraph("; ".join(said) + "."))
+            parts.append(f"{path} of {', '.join(map(value_text, values))}")
+        body.append(markup.paragraph("; ".join(parts) + "."))
         text = json.dumps(base.model_dump(mode="json"), indent=1)
         body.append(
             f"<details><summary>Whole spec of {escape(name)}</summary>"
@@ -209,11 +205,11 @@ def _specs(results: Results) -> list[str]:
     return body
 
 
-def _repeat(results: Results, source: str, command: str) -> list[str]:
+def _repeat(results: Results, source: bytes, command: str) -> list[str]:
     records = [one.record for one in results.runs.values()]
     versions = ", ".join(dict.fromkeys(record.version for record in records))
     devices = "; ".join(dict.fromkeys(x for record in records for x in record.devices))
-    digest = hashlib.sha256(source.encode()).hexdigest()
+    digest = hashlib.sha256(source).hexdigest()
     return [
         markup.heading("Repeat", "repeat"),
         markup.paragraph(
@@ -223,7 +219,7 @@ def _repeat(results: Results, source: str, command: str) -> list[str]:
         ),
         f"<p>The command is <code>{escape(command)}</code>, with this file (SHA-256 "
         f"<code>{digest[:12]}</code>):</p>",
-        f"<pre>{escape(source)}</pre>",
+        f"<pre>{escape(source.decode())}</pre>",
     ]
 
 

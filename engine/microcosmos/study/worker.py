@@ -12,22 +12,23 @@ from .. import plugins
 from ..build import local
 from ..device import cores, prepare
 from ..spec import parse
-from .lock import of_run
-from .pool import Options
+from .local import Options
+from .runs import of_run
 
 
 def main(options: Options, modules: list[str]) -> None:
     """Carry out the runs that the standard input names, until it closes."""
+    # Others may write to the standard output, such as plug-ins and libraries in C.
+    out = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)
     plugins.load_all(())
     for module in modules:
         plugins.load(Path(module))
+    # Workers share the cores; more devices than cores would slow each other down.
     prepare(max(1, cores() // options.processes), options.cache)
-    # Others may write to the standard output, such as libraries in C.
-    out = os.fdopen(os.dup(1), "w", buffering=1)
-    os.dup2(2, 1)
-    asked: SimpleQueue[str | None] = SimpleQueue()
+    requests: SimpleQueue[str | None] = SimpleQueue()
     closed = Event()
-    Thread(target=_listen, args=(asked, closed), daemon=True).start()
+    Thread(target=_listen, args=(requests, closed), daemon=True).start()
 
     def say(**line: Any) -> None:
         try:
@@ -35,7 +36,7 @@ def main(options: Options, modules: list[str]) -> None:
         except BrokenPipeError:
             closed.set()  # The study has ended.
 
-    while (line := asked.get()) is not None and not closed.is_set():
+    while (line := requests.get()) is not None and not closed.is_set():
         run = json.loads(line)
         try:
             path = Path(run["path"])
@@ -53,11 +54,12 @@ def main(options: Options, modules: list[str]) -> None:
             say(error=str(error))
 
 
-def _listen(asked: "SimpleQueue[str | None]", closed: Event) -> None:
+def _listen(requests: "SimpleQueue[str | None]", closed: Event) -> None:
     for line in sys.stdin:
-        asked.put(line)
+        requests.put(line)
+    # First the flag, which stops the run that is under way.
     closed.set()
-    asked.put(None)
+    requests.put(None)
 
 
 if __name__ == "__main__":

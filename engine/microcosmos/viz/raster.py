@@ -149,6 +149,7 @@ def frame(
     thick = max(3.0, 0.8 * seen.scale.mean())
     starts, ends = seen.pixels(_curves(replay, number))
     near = distance(starts, ends, seen.shape, thick / 2 + 3)
+    # The halo first: the body then stands out from vorticity of any colour.
     _blend(picture, colours.halo, 0.8 * coverage(near, thick + 3))
     _blend(picture, colours.ink, coverage(near, thick))
     return np.rint(picture).astype(np.uint8)
@@ -208,6 +209,7 @@ def _curves(replay: Replay, number: int) -> np.ndarray:
 
 
 def _blend(picture: np.ndarray, colour: Colour, opacity: np.ndarray) -> None:
+    # Lines cover few pixels of a picture.
     painted = np.flatnonzero(opacity)
     pixels = picture.reshape(-1, 3)
     share = opacity.ravel()[painted][:, None].astype(np.float32)
@@ -233,6 +235,7 @@ def distance(
     starts, ends = _pieces(starts, ends)
     side = int(np.ceil(reach + PIECE / 2)) + 1
     around = np.arange(-side, side + 1)
+    # In batches, since arrays of pixels grow with the number of pieces.
     for first in range(0, len(starts), BATCH):
         a, b = (points[first : first + BATCH] for points in (starts, ends))
         pixels = np.floor((a + b) / 2).astype(int)[:, :, None] + around  # (piece, 2, place)
@@ -240,6 +243,7 @@ def distance(
         row = (pixels[:, 1] + 0.5 - a[:, 1:]).astype(np.float32)[:, :, None]
         rows, columns = pixels[:, 1] % shape[0], pixels[:, 0] % shape[1]
         places = (rows * shape[1])[:, :, None] + columns[:, None, :]
+        # Pieces share pixels: an assignment would keep the last distance, not the least.
         np.minimum.at(field, places.ravel(), _to_line(column, row, b - a).ravel())
     return field.reshape(shape)
 

@@ -25,6 +25,7 @@ from ..device import device_kind
 from ..filaments import Rest
 from ..fluid import vorticity
 from ..genomes import Drive
+from ..search.evaluation import FEASIBLE
 from ..spec import Gait, Scene, Task, solid_runs
 from ..spec.creature import fitness_of
 from ..spec.estimate import placements, simulation_bytes
@@ -58,6 +59,7 @@ def record(file: Mapping[str, Any]) -> bytes:
     every = interval(scene, nodes)
     program = _program(scene.model_dump_json(), every)
     film, measures = jax.device_get(program(actuator_of(file, scene)))
+    # JSON and int8 have no NaN, and a player could not draw it.
     if not all(np.isfinite(x).all() for x in (film.positions, film.vorticity)):
         needed = "a creature whose simulation stays finite"
         raise creature.CreatureError("identity", needed, "one that diverges")
@@ -84,15 +86,15 @@ def record(file: Mapping[str, Any]) -> bytes:
     }
     if (solid := scene.world.solid) is not None:
         header["solid"] = solid_runs(solid)
-    there = present_parts(film.edges, film.joints, present)
+    edges_present = present_parts(film.edges, film.joints, present)
     if (copies := scene.world.copies) is not None:
         member = np.repeat(np.arange(copies.count), len(present) // copies.count)
         header["member"] = member[present].tolist()
     return _pack(
         header,
         np.asarray(film.positions[:, present], "<f4"),
-        np.asarray(film.rest.angle[:, there[1]], "<f4"),
-        np.asarray(film.rest.length[:, there[0]], "<f4"),
+        np.asarray(film.rest.angle[:, edges_present[1]], "<f4"),
+        np.asarray(film.rest.length[:, edges_present[0]], "<f4"),
         *(_levels(planes[name], scales[name], kind) for name, kind in LEVELS.items()),
     )
 
@@ -138,18 +140,18 @@ def present_parts(
     edges: np.ndarray, joints: np.ndarray, present: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return masks of the edges and joints whose nodes are all present."""
-    there = np.all(present[edges], axis=1)
-    return there, np.all(there[joints], axis=1)
+    edges_present = np.all(present[edges], axis=1)
+    return edges_present, np.all(edges_present[joints], axis=1)
 
 
 def graph_among(
     edges: np.ndarray, joints: np.ndarray, present: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return edges (edge, 2) and joints (joint, 2) that are present, renumbered."""
-    there, bending = present_parts(edges, joints, present)
+    edges_present, bending = present_parts(edges, joints, present)
     return (
-        (np.cumsum(present) - 1)[edges[there]],
-        (np.cumsum(there) - 1)[joints[bending]],
+        (np.cumsum(present) - 1)[edges[edges_present]],
+        (np.cumsum(edges_present) - 1)[joints[bending]],
     )
 
 
@@ -239,6 +241,7 @@ def _filmed(
         end, seen = search.simulate(replace(driven, start=state, inputs=given))
         return end, (frame(end), seen)
 
+    # Steps behind the last frame are simulated too, since measures are over all steps.
     whole = jax.tree.map(
         lambda x: x[: frames * every].reshape(frames, every, *x.shape[1:]), driven.inputs
     )
@@ -264,7 +267,9 @@ def _filmed(
 
 
 def _mean_motion(task: search.Task, actuator: search.Actuator) -> dict[str, Any]:
-    """Average measures over all trials and placements of energy; the film shows the first."""
+    """Combine measures over all trials and placements of energy, as an evaluation does; the
+    film shows the first."""
+    limits = {name for name, _ in FEASIBLE.values()}
 
     def measured(one: search.Task, driven: Drive) -> dict[str, Any]:
         return search.motion_of(one, driven, *search.simulate(driven))
@@ -278,8 +283,11 @@ def _mean_motion(task: search.Task, actuator: search.Actuator) -> dict[str, Any]
         )
         return mean(shifted)
 
-    def mean(found: dict[str, Any]) -> dict[str, Any]:
-        return jax.tree.map(lambda x: jnp.mean(x, 0), found)
+    def mean(measures: dict[str, Any]) -> dict[str, Any]:
+        return {
+            name: (jnp.max if name in limits else jnp.mean)(values, 0)
+            for name, values in measures.items()
+        }
 
     return (
         in_placements(task) if task.trials == 1 else mean(search.in_trials(task, in_placements))

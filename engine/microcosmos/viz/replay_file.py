@@ -52,7 +52,7 @@ class Replay:
     """(frame, x, y) int8: the vorticity in units of `quantum`."""
 
     drive: Drive | None = None
-    """None if only the motion is known."""
+    """Drive of the body; None if only the motion is known."""
 
     @property
     def frames(self) -> int:
@@ -60,7 +60,7 @@ class Replay:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Cells along x and y."""
+        """Return the cells along x and y."""
         width, height = self.header["size"]
         return width, height
 
@@ -71,17 +71,17 @@ class Replay:
 
     @property
     def vorticity(self) -> np.ndarray:
-        """(frame, x, y), in 1/step."""
+        """Return the vorticity (frame, x, y) in 1/step."""
         return self.levels * np.float32(self.quantum)
 
     @cached_property
     def edges(self) -> np.ndarray:
-        """(edge, 2) node numbers."""
+        """Return the nodes (edge, 2) of each edge."""
         return np.array(self.header["edges"], int).reshape(-1, 2)
 
     @cached_property
     def centres(self) -> np.ndarray:
-        """(frame, creature, 2): the mean position of each creature's nodes, in cells."""
+        """Return the mean position (frame, creature, 2) of each creature's nodes, in cells."""
         member = np.array(self.header.get("member", [0] * self.header["nodes"]))
         count = np.bincount(member)
         sums = np.zeros((len(count), self.frames, 2))
@@ -90,13 +90,14 @@ class Replay:
 
     @cached_property
     def solid(self) -> np.ndarray:
-        """(x, y): the mask of cells without fluid."""
+        """Return the mask (x, y) of cells without fluid."""
         runs = self.header.get("solid", [prod(self.size)])
         return np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(self.size)
 
     @cached_property
     def strongest(self) -> float:
-        """The vorticity that 1 % of the nonzero values exceed."""
+        """Return the vorticity that 1 % of the nonzero values exceed."""
+        # Counts of 256 levels, in place of a sort of millions of values.
         counts = np.bincount(self.levels.ravel().view(np.uint8), minlength=256)
         values = np.arange(256, dtype=np.uint8).view(np.int8).astype(int)
         tally = np.bincount(np.abs(values), counts)
@@ -127,15 +128,30 @@ def read_replay(data: bytes) -> Replay:
     _need(len(data) == end, "bytes", f"{end} of them by its header", len(data))
     arrays = []
     for shape, kind in shapes:
-        found = np.frombuffer(data, kind, prod(shape), start).reshape(shape)
-        arrays.append(found.astype(np.float32) if kind == "<f4" else found)
-        start += found.nbytes
-    valid = all(np.isfinite(found).all() for found in arrays)
+        array = np.frombuffer(data, kind, prod(shape), start).reshape(shape)
+        # The file is little-endian; an array has the byte order of the machine.
+        arrays.append(array.astype(np.float32) if kind == "<f4" else array)
+        start += array.nbytes
+    valid = all(np.isfinite(array).all() for array in arrays)
     _need(valid, "positions", "finite numbers", "others")
     positions, angles, lengths, levels, velocity, energy = arrays
     speed, most = (header[name]["scale"] for name in ("velocity", "energy"))
     flow = velocity * np.float32(speed / 127), energy * np.float32(most / 255)
     return Replay(header, positions, levels, Drive(angles, lengths, *flow))
+
+
+def read_motion(part: Callable[[int, int], bytes]) -> Replay:
+    """Return a replay without its drive, of which `part` reads bytes from a start to a stop.
+
+    Drive and flow are most of a file, and pages without a server show neither.
+    """
+    (length,) = struct.unpack("<I", part(0, 4))
+    header, start = _header(part(0, 4 + length))
+    frames, nodes, size = (header[name] for name in ("frames", "nodes", "size"))
+    positions = np.frombuffer(part(start, start + 8 * frames * nodes), "<f4")
+    start += 4 * frames * (2 * nodes + len(header["joints"]) + len(header["edges"]))
+    levels = np.frombuffer(part(start, start + frames * prod(size)), np.int8)
+    return Replay(header, positions.reshape(frames, nodes, 2), levels.reshape(frames, *size))
 
 
 def _header(data: bytes) -> tuple[dict[str, Any], int]:
@@ -147,8 +163,8 @@ def _header(data: bytes) -> tuple[dict[str, Any], int]:
     except ValueError:
         raise ReplayError("header", "JSON", data[4 : 4 + length]) from None
     _need(isinstance(header, dict), "header", "a JSON object", header)
-    found = header.get("format")
-    _need(found == REPLAY_FORMAT, "format", repr(REPLAY_FORMAT), found)
+    form = header.get("format")
+    _need(form == REPLAY_FORMAT, "format", repr(REPLAY_FORMAT), form)
     _check(header)
     return header, 4 + length
 
@@ -197,6 +213,7 @@ def _check_solid(runs: Any, cells: int) -> None:
 
 
 def _is_count(value: Any) -> bool:
+    # To Python, `True` is an int too.
     return type(value) is int and value >= 1
 
 

@@ -1,8 +1,6 @@
 """The process of one sink, with pictures of archives: `python -m microcosmos.viz.sink`."""
 
 from contextlib import suppress
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from ..sinks.process import main
 
@@ -13,12 +11,9 @@ def picture(data: bytes) -> bytes | None:
     """Return a PNG of an archive file; None without elites, an archive, or matplotlib."""
     from .figures import drawing
 
-    with TemporaryDirectory() as folder, suppress(ImportError, ValueError):
-        path, out = Path(folder, "run.h5"), Path(folder, "archive.png")
-        path.write_bytes(data)
-        drawing.archive(path, out, drawing.Print(dpi=DPI), None, "fitness")
-        return out.read_bytes()
-    return None
+    # The sink keeps its curves without matplotlib, and before the first elite.
+    with suppress(ImportError, ValueError):
+        return drawing.picture(data, drawing.Print(dpi=DPI))
 
 
 if __name__ == "__main__":

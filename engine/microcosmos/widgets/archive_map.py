@@ -6,8 +6,13 @@ from typing import Any
 
 from ..archive import poses
 from ..archive.report import Report
-from .assets import anywidget, script, styles, traitlets
+from ..optional import require
+from .assets import script, styles
 from .contents import MOST, Contents, Read, empty, fittest, of_file
+
+NOTEBOOK = "microcosmos[notebook]"
+anywidget: Any = require("anywidget", NOTEBOOK)
+traitlets: Any = require("traitlets", NOTEBOOK)
 
 SECONDS, POSES_SECONDS = 1.0, 5.0
 """Shortest times between two updates of the map, and of its creatures, in seconds."""
@@ -45,7 +50,8 @@ class ArchiveMap(anywidget.AnyWidget):
     def __init__(self, source: Source, **options: Any):
         """Show an archive; `options` are `x`, `y`, `colour` and `selected`.
 
-        Of a spec the map is empty: `mc.evolve(spec, path, tell=map.tell)` fills it. Raise
+        The map of a spec is empty: `mc.evolve(spec, path, tell=map.tell)` fills it. Where that
+        goes on from a file, give the file: a generation brings its new elites alone. Raise
         `ValueError` for a file or a spec of a run without an archive.
         """
         self._lock = Lock()
@@ -86,6 +92,7 @@ class ArchiveMap(anywidget.AnyWidget):
             raise ValueError("`tell` needs a map of a spec or of a file, got one of a server")
         with self._lock:
             self._contents.add(report)
+            # Generations may come faster than a page draws: one timer gathers them.
             if self._timer is None:
                 self._timer = Timer(SECONDS, self._tick)
                 self._timer.daemon = True
@@ -104,8 +111,11 @@ class ArchiveMap(anywidget.AnyWidget):
         with self._lock:
             given = self._contents.document()
             batch = self._motions(given) if motions else self._poses
+        # One message: the page must not draw cells of one state with motions of another.
         with self.hold_sync():
             self._archive, self._poses, self._about = given, batch, about(given)
+            # Cells that were emptied are selected no longer
+            # (test_a_selection_names_creatures_and_loses_cells_that_are_gone).
             present = set(given["cell"])
             self.selected = [cell for cell in self.selected if cell in present]
 
@@ -127,10 +137,10 @@ def contents_of(source: Source) -> Contents | Read:
 
 def about(document: dict[str, Any]) -> str:
     """Return a line on the archive."""
-    found = document["cell"]
+    filled = document["cell"]
     words = "places" if document["kind"] == "pool" else "cells"
-    parts = [f"{len(found):,} of {document['cells']:,} {words}"]
+    parts = [f"{len(filled):,} of {document['cells']:,} {words}"]
     parts += [f"generation {document['generation']}"]
-    if len(found) > MOST:
+    if len(filled) > MOST:
         parts += [f"the {MOST} fittest swim"]
     return " · ".join(parts)

@@ -1,14 +1,11 @@
-"""The JavaScript of the widgets, which `make web` builds from `web/src/widget`."""
+"""The widgets' module and styles and the page of a replay, which `make web` builds.
+
+Other packages read the page too, so this needs no optional package.
+"""
 
 from pathlib import Path
-from typing import Any
-
-from ..optional import require
 
 FOLDER = Path(__file__).parent
-
-anywidget: Any = require("anywidget", "microcosmos[notebook]")
-traitlets: Any = require("traitlets", "microcosmos[notebook]")
 
 
 def script() -> str:
@@ -19,6 +16,11 @@ def script() -> str:
 def styles() -> str:
     """Return the styles of all widgets. Raise `FileNotFoundError` as `script` does."""
     return _built("widget.css")
+
+
+def page() -> str:
+    """Return the page of a replay, without its data. Raise `FileNotFoundError` as `script`."""
+    return _built("widget.html")
 
 
 def _built(name: str) -> str:

@@ -8,11 +8,12 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from ..archive import file, poses
+from ..archive import file, measured, poses
 from ..archive.export import source_bytes, tessellation
+from ..archive.measured import described
 from ..archive.report import Report
+from ..measures import RECORDED
 from ..spec import Neuroevolution, QualityDiversity, parse
-from ..spec.measures import MEASURES
 
 MOST = 600
 """Largest number of creatures that swim on a map, as on the page; about 6 MB."""
@@ -66,6 +67,7 @@ class Contents:
             self.elites[one.cell] = Shown(*values, one.measures)
             if one.poses is not None:
                 self.streams[one.creature] = one.poses
+        # Streams of replaced elites would fill the memory of a long run.
         present = {one.creature for one in self.elites.values()}
         self.streams = {name: data for name, data in self.streams.items() if name in present}
 
@@ -98,6 +100,7 @@ class Contents:
 
 
 def finite(value: float | None) -> float | None:
+    # JSON has no NaN (test_values_that_are_not_finite_are_none_in_json).
     return value if value is not None and isfinite(value) else None
 
 
@@ -127,39 +130,36 @@ def empty(spec: Any) -> Contents:
         kind, cells = "cvt", archive.centroids
     else:
         kind, cells = "grid", prod(axis["bins"] for axis in axes)
-    recorded = [{"name": name, **asdict(one)} for name, one in MEASURES.items()]
-    return Contents(kind, cells, axes, recorded)
+    return Contents(kind, cells, axes, recorded(spec, (*RECORDED, *archive.named)))
+
+
+def recorded(spec: Any, names: Sequence[str]) -> list[dict[str, Any]]:
+    """Return title, unit and axis of measures of a search."""
+    plugins, task = spec.archive.plugins, spec.task
+    plugins |= {task.fitness: task.plugin} if task.plugin else {}
+    axes = {one.name: one for one in spec.archive.descriptors}
+    return [asdict(described(name, plugins, axes)) for name in names]
 
 
 def of_file(source: bytes | str | Any) -> Contents:
     """Return the content of an archive file. Raise `ValueError` for a file without one."""
     tree, attributes = file.load(source_bytes(source))
     spec = parse(json.loads(attributes["spec"]))
-    found = empty(spec)
-    archive, names = tree["archive"], json.loads(attributes["measures"])
-    found.recorded = [measure(name) for name in names]
+    contents = empty(spec)
+    archive, measures = tree["archive"], measured.columns(tree, attributes)
+    names = list(measures)
+    contents.recorded = recorded(spec, names)
     cells = tessellation(archive, json.loads(attributes["spec"])["archive"])
-    found.centroids = None if cells is None else np.asarray(cells, float).tolist()
-    axes = [names.index(axis["name"]) for axis in found.axes]
+    contents.centroids = None if cells is None else np.asarray(cells, float).tolist()
+    axes = [names.index(axis["name"]) for axis in contents.axes]
     columns = (archive[name].tolist() for name in ("cell", "fitness", "generation"))
     for row, creature, cell, fitness, generation in zip(
         archive["measures"].astype(float), archive["creature"], *columns, strict=True
     ):
         values = fitness, tuple(row[axes].tolist()), generation, bytes(creature).hex()
-        measures = dict(zip(names, row.tolist(), strict=True))
-        found.elites[cell] = Shown(*values, measures)
-    found.generation = len(tree["curves"]["best"]) if "curves" in tree else 0
+        contents.elites[cell] = Shown(*values, dict(zip(names, row.tolist(), strict=True)))
+    contents.generation = len(tree["curves"]["best"]) if "curves" in tree else 0
     if "poses" in archive:
         streams = poses.streams(tree, attributes)
-        found.streams = {one.creature: one.encode() for one in streams}
-    return found
-
-
-def measure(name: str) -> dict[str, Any]:
-    """Return what is known of a measure; one of a plug-in has its name for a title."""
-    if name in MEASURES:
-        return {"name": name, **asdict(MEASURES[name])}
-    title = name.replace("_", " ").capitalize()
-    return {"name": name, "title": title, "unit": "", "low": None, "high": None} | {
-        "scale": "linear"
-    }
+        contents.streams = {one.creature: one.encode() for one in streams}
+    return contents

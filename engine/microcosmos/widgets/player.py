@@ -5,8 +5,13 @@ from importlib import import_module
 from typing import Any, Protocol, runtime_checkable
 
 from ..archive import poses
+from ..optional import require
 from ..viz.replay_file import read_replay
-from .assets import anywidget, script, styles, traitlets
+from .assets import script, styles
+
+NOTEBOOK = "microcosmos[notebook]"
+anywidget: Any = require("anywidget", NOTEBOOK)
+traitlets: Any = require("traitlets", NOTEBOOK)
 
 
 @runtime_checkable

@@ -2,8 +2,21 @@
 
 from . import gpu, native
 from .controller import Actuators, Controller, Network, Series
-from .model import Form, Limits, Measures, State, World, at_rest, flow, with_bodies
+from .model import (
+    Form,
+    Limits,
+    Measures,
+    State,
+    World,
+    at_rest,
+    centre,
+    flow,
+    grown_nodes,
+    grown_rods,
+    mean,
+    present_edges,
+    present_joints,
+    with_bodies,
+)
 from .nodes import repel, sense
-from .present import centre, edges_there, grown_nodes, grown_rods, joints_there, mean
-from .rolling import follow, keep_memory, rollout
-from .stepping import move, step
+from .stepping import follow, keep_memory, move, rollout, step

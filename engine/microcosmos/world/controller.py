@@ -19,7 +19,7 @@ class Network(eqx.Module):
     target: Int[Array, "link"]
     weight: Float[Array, "link"]
     sites: Float[Array, "site node"]
-    """Inputs that say where a node is in the body."""
+    """Inputs that tell a node its place in the body."""
     lag: Float[Array, "node"] | None
     """Phase lag of a travelling sine and cosine, in rad; None: there are none."""
     timer: Float[Array, "time clock"]
@@ -29,7 +29,7 @@ class Network(eqx.Module):
     """Factor on what the network commands for the angle of a joint."""
     recurrent: bool = eqx.field(static=True)
     senses: bool = eqx.field(static=True)
-    """Whether the energy at the node is an input, so that the loop is closed."""
+    """True if the energy at the node is an input, so that the loop is closed."""
 
 
 class Series(eqx.Module):
@@ -40,7 +40,7 @@ class Series(eqx.Module):
 
 
 class Actuators(eqx.Module):
-    """Bounds on what a body does; None or 0 switches one off."""
+    """Bounds on what a body does; None, or a lag of 0, switches one off."""
 
     layout: filaments.Layout
     max_speed: float | None = eqx.field(static=True, default=None)
@@ -50,9 +50,17 @@ class Actuators(eqx.Module):
     max_bend: float | None = eqx.field(static=True, default=None)
     """Largest angle that is added between any two edges, in rad."""
 
+    def __check_init__(self):
+        for name in ("max_speed", "max_bend"):
+            bound = getattr(self, name)
+            if bound is not None and not bound > 0:
+                raise ValueError(
+                    f"`{name}` must be above 0, or None for no bound; got {bound}."
+                )
+
 
 class Controller(eqx.Module):
-    """What commands rest angles and rest lengths, −1 to 1, and the scales of both."""
+    """The source of commands for rest angles and rest lengths, −1 to 1, and their scales."""
 
     commands: Network | Series
     ramp: Float[Array, "time"]
@@ -66,5 +74,5 @@ class Controller(eqx.Module):
 
     @property
     def senses(self) -> bool:
-        """Whether rest shapes depend on the simulation."""
+        """True if rest shapes depend on the simulation."""
         return isinstance(self.commands, Network) and self.commands.senses

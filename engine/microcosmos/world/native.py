@@ -41,7 +41,7 @@ PARTS = (
     "measures",
     "fluid",
 )
-"""Parts of a step, whose time `part_seconds` takes."""
+"""Parts of a step whose times the kernel measures, in the order of its enumeration."""
 OBSERVED = (
     "centre",
     "positions",
@@ -55,7 +55,8 @@ OBSERVED = (
 )
 """Measures in the order of the kernel's results."""
 ALONE: Numbers = {"threads": 1, "observed": True, "timed": False}
-"""How a rollout is carried out, unless something else is chosen."""
+"""Default options of a rollout: one thread, measures of each step, no times of the parts."""
+# Places in these tuples are the kernel's numbers of a choice, see `rollout.h`.
 PROJECTIONS = (coupling.unprojected, coupling.force_free, coupling.torque_free)
 DELTAS = (coupling.PESKIN, coupling.ROMA, coupling.HAT)
 MAGIC = (fluid.capped_magic, fluid.fixed_magic)
@@ -79,7 +80,7 @@ def chosen(world: World, state: State, covered: bool = True) -> bool:
     return installed and reason is None
 
 
-@cache
+@cache  # The log names each reason once a process, not once a program.
 def _say_once(reason: str) -> None:
     LOG.info("JAX simulates: the native kernel does not cover %s", reason)
 
@@ -88,6 +89,7 @@ def _say_once(reason: str) -> None:
 def register(function: str, instruction_set: str | None = None) -> str:
     """Register a function of the kernel with JAX, once, and return the name of its target."""
     path = import_module("microcosmos_kernels").library(instruction_set)
+    # One target for each instruction set, since tests load several into one process.
     target = f"microcosmos_{function}_{path.stem}"
     handler = jax.ffi.pycapsule(getattr(ctypes.CDLL(str(path)), f"microcosmos_{function}"))
     jax.ffi.register_ffi_target(target, handler, platform="cpu")
@@ -95,8 +97,12 @@ def register(function: str, instruction_set: str | None = None) -> str:
 
 
 def uncovered(world: World, state: State) -> str | None:
-    """Return what of a world the kernel lacks; None if it can simulate the world."""
+    """Return the feature that the kernel lacks for a world; None if it simulates the world."""
+    form = world.form
     lacking = {
+        "forcing of another projection": form.projection not in PROJECTIONS,
+        "another delta": form.kernel not in DELTAS,
+        "another magic parameter": form.magic not in MAGIC,
         "repulsion of another form": not _known_repulsion(world),
         "numbers other than float32": state.positions.dtype != jnp.float32,
         "a body without joints listed": world.rods.joints is None,
@@ -111,16 +117,18 @@ def _known_repulsion(world: World) -> bool:
 def develop(
     world: World, state: State, controller: Controller, instruction_set: str | None = None
 ) -> tuple[filaments.Rest, Float[Array, "time"]]:
-    """Return the rest shapes at all times that a controller commands in open loop and its
-    actuators carry out, and the controller's time at the end of each step."""
+    """Return rest shapes for all times, and the controller's time at the end of each step.
+
+    The controller commands them in open loop; its actuators have carried them out.
+    """
     steps, rods = len(controller.ramp), world.rods
     shapes = [(steps, len(rods.bend)), (steps, len(rods.edges)), (steps,)]
-    found = call(
+    angle, length, clock = call(
         register("develop", instruction_set),
         shapes,
         *development_operands(world, state, controller),
     )
-    return filaments.Rest(found[0], found[1]), found[2]
+    return filaments.Rest(angle, length), clock
 
 
 def development_operands(
@@ -139,15 +147,15 @@ def rollout(
     instruction_set: str | None = None,
     threads: int = 1,
 ) -> tuple[State, Measures]:
-    """Return the state after all steps of rest shapes (time first), or of a controller in
-    closed loop, and the measures of each step.
+    """Return the state after all steps, and the measures of each step (time first).
 
-    The memory of the controller stays. `threads` share the world; results do not depend on
-    them. Raises `ValueError` for a world the kernel lacks.
+    `given` are rest shapes (time first), or a controller in closed loop, whose memory the state
+    keeps. `threads` share the world; results do not depend on their number. Raises `ValueError`
+    for a world that the kernel does not cover.
     """
-    end, found = _rollout(world, state, given, instruction_set, {"threads": threads})
-    rest = filaments.Rest(*found[:2]) if isinstance(given, Controller) else given
-    observed = dict(zip(OBSERVED, found[2:-2], strict=True))
+    end, results = _rollout(world, state, given, instruction_set, {"threads": threads})
+    rest = filaments.Rest(*results[:2]) if isinstance(given, Controller) else given
+    observed = dict(zip(OBSERVED, results[2:-2], strict=True))
     measures = jax.vmap(lambda rest, step: Measures(rest=rest, **step))(rest, observed)
     return end, measures
 
@@ -155,15 +163,15 @@ def rollout(
 def advance(
     world: World, state: State, rest: filaments.Rest, steps: int, threads: int = 1
 ) -> tuple[State, Float[Array, "part"], Float[Array, ""]]:
-    """Return the state after some steps of one rest shape, nothing of which is recorded, the
-    time that they spent in each of `PARTS`, in seconds, and the bytes of the kernel's arrays.
+    """Return the state after `steps` of one rest shape, without a record of them.
 
-    Worlds that other threads simulate at the same time count too.
+    Also return the time spent in each of `PARTS`, in seconds, and the bytes of the kernel's
+    arrays, those of worlds that other threads simulate at the same time included.
     """
     still = jax.tree.map(lambda x: x[None], rest)
     options = {"steps": steps, "threads": threads, "observed": False, "timed": True}
-    end, found = _rollout(world, state, still, None, options)
-    return end, found[-2], found[-1][0]
+    end, results = _rollout(world, state, still, None, options)
+    return end, results[-2], results[-1][0]
 
 
 def part_seconds(world: World, state: State, rest: filaments.Rest) -> Float[Array, "part"]:
@@ -178,7 +186,7 @@ def _rollout(
     instruction_set: str | None,
     chosen: Numbers,
 ) -> tuple[State, list[Array]]:
-    """Return the end, then rest shapes of a controller, `OBSERVED`, times and bytes."""
+    """Return the end; rest shapes of a controller, `OBSERVED`, times and bytes in one list."""
     reason = uncovered(world, state)
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")
@@ -186,11 +194,13 @@ def _rollout(
     operands, numbers = rollout_operands(world, state, given)
     options = {**numbers, **chosen}
     shapes = _results(world, state, options["steps"] if options["observed"] else 0, closed)
-    found = call(register("rollout", instruction_set), shapes, operands, options)
-    end = replace(state, populations=tuple(found[:9]), positions=found[9], angles=found[10])
+    results = call(register("rollout", instruction_set), shapes, operands, options)
+    end = replace(
+        state, populations=tuple(results[:9]), positions=results[9], angles=results[10]
+    )
     if state.energy is not None:
-        end = replace(end, energy=found[11], collected=found[12])
-    return end, found[13:]
+        end = replace(end, energy=results[11], collected=results[12])
+    return end, results[13:]
 
 
 def rollout_operands(
@@ -203,6 +213,7 @@ def rollout_operands(
     commands, numbers = controller_of(controller)
     around, features = surroundings_of(world)
     joints, edges = _counts(world)
+    # The interface has a fixed list of operands: what is absent has no items.
     nothing = jnp.zeros((0, joints), jnp.float32), jnp.zeros((0, edges), jnp.float32)
     rest = nothing if isinstance(given, Controller) else (given.angle, given.length)
     field = jnp.zeros((0, world.size[1]), jnp.float32) if state.energy is None else state.energy
@@ -245,12 +256,17 @@ def call(
     operands: Sequence[Array],
     options: Mapping[str, int],
 ) -> list[Array]:
-    """Return the results, of these shapes, of a registered function."""
+    """Return the results, float32 of these shapes, of a registered function.
+
+    `shapes` and `operands` are those of one world; under `vmap` batch axes come first.
+    """
     function = jax.ffi.ffi_call(
         target,
         [jax.ShapeDtypeStruct(shape, jnp.float32) for shape in shapes],
+        # An operand that all worlds of a batch share gets an axis of length 1, not copies.
         vmap_method="expand_dims",
     )
+    # The type of an attribute is that of its scalar, and the kernel reads 32 bits.
     return list(
         function(*operands, **{name: np.int32(value) for name, value in options.items()})
     )
@@ -269,7 +285,7 @@ def _collected(state: State) -> Float[Array, "node"]:
 
 
 def _results(world: World, state: State, steps: int, closed: bool) -> list[tuple[int, ...]]:
-    """Return the shapes of the end, of rest shapes, of `OBSERVED`, of times and of bytes."""
+    """Return the shapes of the kernel's results: end, rest shapes, `OBSERVED`, times, bytes."""
     joints, edges = _counts(world)
     nodes, bodies = len(state.positions), world.groups.count
     energetic, commanded = state.energy is not None, steps if closed else 0
@@ -283,13 +299,18 @@ def _results(world: World, state: State, steps: int, closed: bool) -> list[tuple
 
 def _parameters(world: World) -> Array:
     form, limits, energy = world.form, world.limits, world.energy
-    bounds = [jnp.inf if one is None else one for one in (limits.displacement, limits.force)]
-    rate, diffusion = (None, None) if energy is None else (energy.rate, energy.diffusion)
-    absent = [0.0 if one is None else one for one in (world.nu_c, rate, diffusion)]
+    # The kernel's parameters have a fixed length: what is absent has a value without effect.
+    bounds = [
+        jnp.inf if one is None else one
+        for one in (world.nu_c, limits.displacement, limits.force)
+    ]
+    # A rate of 0 takes nothing; without one energy is counted and stays.
+    rate = -1.0 if energy is None or energy.rate is None else energy.rate
+    diffusion = 0.0 if energy is None or energy.diffusion is None else energy.diffusion
     steric = world.steric
     repulsion = (0.0, 0.0) if steric is None else (steric.strength, steric.limit)
     barred = 0.0 if world.barrier is None else world.barrier.limit
     factors = (form.force_factor, form.theta_feedback)
-    values = [world.viscosity, *absent, *bounds, *factors, *repulsion, barred]
+    values = [world.viscosity, bounds[0], rate, diffusion, *bounds[1:], *factors, *repulsion]
     lengths = coupling.step_lengths(form.forcing_iterations)
-    return jnp.stack([jnp.asarray(one, jnp.float32) for one in (*values, *lengths)])
+    return jnp.stack([jnp.asarray(one, jnp.float32) for one in (*values, barred, *lengths)])

@@ -7,8 +7,7 @@ from jaxtyping import Array, Float
 
 from .. import coupling, fields
 from ..groups import Groups
-from .model import State, World
-from .present import grown_nodes
+from .model import State, World, grown_nodes
 
 Vectors = Float[Array, "node 2"]
 Scalars = Float[Array, "node"]
@@ -24,18 +23,20 @@ def sense(world: World, state: State) -> Float[Array, "node"]:
 
 
 def collect(world: World, state: State, at: coupling.Windows) -> State:
-    """Return the state after nodes took energy at their positions before the step."""
+    """Return the state after nodes have taken energy where they stood before the step."""
     energy, field = world.energy, state.energy
     if energy is None or field is None:
         return state
     per_node = field
     if energy.rate is not None:
+        # A node counts once, however many points it has.
         ones = jnp.ones((at.points, 1), field.dtype) / world.form.layers
         coverage = coupling.spread(ones, at, world.size)[0]
         field, per_node = fields.collect(field, coverage, energy.rate)
     if energy.diffusion is not None:
         field = fields.diffuse(field, energy.diffusion)
     taken = coupling.interpolate(per_node[None], at)
+    # `at_nodes` takes vectors, so the number stands in both components.
     taken = coupling.at_nodes(jnp.tile(taken, (1, 2)), world.form.layers)[:, 0]
     before = 0.0 if state.collected is None else state.collected
     return replace(state, energy=field, collected=before + taken)
@@ -59,19 +60,20 @@ def _apart(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     at = coupling.masked(coupling.windows(positions, world.size, coupling.HAT), world.present)
     density = coupling.spread(jnp.ones_like(positions[:, :1]), at, world.size)[0]
     push = -world.steric.strength * coupling.interpolate(world.steric.gradient(density), at)
-    here = _weights(world, positions)
-    rigid = coupling.torque_free(push, here, positions, world.groups)
+    weights = _weights(world, positions)
+    rigid = coupling.torque_free(push, weights, positions, world.groups)
     within = fields.capped(push - rigid, world.steric.limit)
-    within = within - coupling.torque_free(within, here, positions, world.groups)
+    # The cap has changed the sums, so the rigid part goes a second time.
+    within = within - coupling.torque_free(within, weights, positions, world.groups)
     if world.groups.count == 1:
         return within, jnp.zeros_like(positions)
-    moved = coupling.force_free(push, here, positions, world.groups)
-    turned = _turned(rigid - moved, moved, here, world.groups, world.steric.limit)
+    moved = coupling.force_free(push, weights, positions, world.groups)
+    turned = _turned(rigid - moved, moved, weights, world.groups, world.steric.limit)
     return within, fields.capped(moved, world.steric.limit) + turned
 
 
 def _turned(
-    turned: Vectors, moved: Vectors, here: Scalars, groups: Groups, limit: Scalar
+    turned: Vectors, moved: Vectors, weights: Scalars, groups: Groups, limit: Scalar
 ) -> Vectors:
     """Limit the rotation of each body by contact, like its translation.
 
@@ -80,9 +82,10 @@ def _turned(
     the net push, which is contact alone, at the body's farthest node.
     """
     square = jnp.sum(turned * turned, 1)
-    mean = groups.total(here * square) / groups.total(here)
-    tip = jnp.sqrt(groups.largest(here * square) + 1e-24)
-    push = jnp.sqrt(groups.largest(here * jnp.sum(moved * moved, 1)) + 1e-24)
+    mean = groups.total(weights * square) / groups.total(weights)
+    tip = jnp.sqrt(groups.largest(weights * square) + 1e-24)
+    push = jnp.sqrt(groups.largest(weights * jnp.sum(moved * moved, 1)) + 1e-24)
+    # Constants keep roots and quotients differentiable where nothing touches.
     most = jnp.minimum(limit / tip, push * tip / (mean + 1e-24))
     return turned * groups.per_node(jnp.minimum(1.0, most))[:, None]
 
@@ -99,13 +102,14 @@ def _kept_out(world: World, positions: Vectors) -> Vectors:
     at = coupling.masked(coupling.windows(positions, world.size, coupling.HAT), world.present)
     away = coupling.interpolate(barrier.away, at)
     weight = jnp.sqrt(jnp.sum(away * away, 1) + 1e-24)
+    # Above the weights of 1e-12 that untouched nodes have by the guard of their root.
     touching = groups.total(weight) + 1e-9
     moved = groups.per_node(groups.total(weight[:, None] * away) / touching[:, None])
-    here = _weights(world, positions)
-    centre = groups.total(here[:, None] * positions) / groups.total(here)[:, None]
+    weights = _weights(world, positions)
+    centre = groups.total(weights[:, None] * positions) / groups.total(weights)[:, None]
     arm, left = positions - groups.per_node(centre), away - moved
     torque = groups.total(weight * (arm[:, 0] * left[:, 1] - arm[:, 1] * left[:, 0]))
-    tip = jnp.sqrt(groups.largest(here * jnp.sum(arm * arm, 1)) + 1e-24)
+    tip = jnp.sqrt(groups.largest(weights * jnp.sum(arm * arm, 1)) + 1e-24)
     turn = torque / touching / tip
     turn = jnp.clip(turn, -barrier.limit, barrier.limit) / tip
     turned = groups.per_node(turn)[:, None] * jnp.stack([-arm[:, 1], arm[:, 0]], 1)

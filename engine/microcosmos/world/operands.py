@@ -7,18 +7,17 @@ from jaxtyping import Array, Int
 
 from .. import fields, filaments
 from .controller import Actuators, Controller, Network, Series
-from .model import State, World
-from .present import grown_nodes
+from .model import State, World, grown_nodes
 
 Numbers = dict[str, int]
 GIVEN, NETWORK, SERIES = range(3)
-"""What commands rest shapes, in the kernel's numbers."""
+"""Sources of rest shapes, by the kernel's numbers: recorded, a network, a series."""
 
 
 def body_of(
     world: World, state: State, controller: Controller | None
 ) -> tuple[list[Array], Numbers]:
-    """Return the graph, the start and the layout of all bodies, and their sizes."""
+    """Return the start, the graph and the layout of all bodies, and their sizes."""
     rods, nodes = world.rods, len(state.positions)
     actuators = None if controller is None else controller.actuators
     layout = world.layout
@@ -46,11 +45,14 @@ def body_of(
 
 
 def stiffness_of(world: World) -> list[Array]:
-    """Return the colours of edges and joints, which only sweeps need, and all stiffnesses."""
+    """Return the colours of edges and joints, then all stiffnesses.
+
+    Shape matching needs no colours: they then have no items.
+    """
     rods, nodes = world.rods, len(world.groups.member)
     stiffness = [rods.stretch, rods.shear, rods.bend]
     if world.layout is not None:
-        if world.layout.bend is not None:
+        if world.layout.bend is not None:  # Soft joints of a matched shape have their own.
             stiffness[2] = world.layout.bend
         return [jnp.zeros(0, jnp.int32), jnp.zeros(0, jnp.int32), *stiffness]
     # Colours may be those of the first of several chunks of equal bodies.
@@ -66,7 +68,7 @@ def stiffness_of(world: World) -> list[Array]:
 
 
 def smoothing_of(world: World) -> list[Array]:
-    """Return the weights along both axes that smooth the density of nodes that repel."""
+    """Return the weights along both axes that smooth the density of nodes for repulsion."""
     if world.steric is None:
         return [_nothing(0, cells) for cells in world.size]
     weights = fields.WEIGHTS[world.steric.gradient]
@@ -74,8 +76,7 @@ def smoothing_of(world: World) -> list[Array]:
 
 
 def surroundings_of(world: World) -> tuple[list[Array], Numbers]:
-    """Return the forces, the walls, what keeps bodies out of them, and the sponge, and
-    which of these there are."""
+    """Return forces, walls, displacements at walls and the sponge, and flags of those used."""
     around, width = world.surroundings, world.size[1]
     force, solid, sponge = around.force, around.solid, around.sponge
     walls = jnp.zeros((0, width), jnp.int32) if solid is None else jnp.asarray(solid, jnp.int32)
@@ -102,7 +103,7 @@ def surroundings_of(world: World) -> tuple[list[Array], Numbers]:
 
 
 def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
-    """Return a controller, and its sizes; without one, arrays that hold nothing."""
+    """Return the arrays of a controller and its sizes; without one, arrays without items."""
     network = series = None
     if controller is not None:
         commands = controller.commands
@@ -183,9 +184,11 @@ def _nothing(*shape: int) -> Array:
 def _colours(
     colours: tuple[filaments.Pairing, ...], chunk: int, count: int
 ) -> Int[Array, "constraint"]:
-    """Return the colour of each constraint."""
-    found = jnp.zeros(chunk, jnp.int32)
+    """Return the colour of each of `count` constraints from those of the first chunk."""
+    numbers = jnp.zeros(chunk, jnp.int32)
     for number, one in enumerate(colours):
+        # A pair names its constraint twice, and members without one name any: only the first
+        # of a pair (sign 1) writes; the others point beyond the end, where writes are dropped.
         at = jnp.where(one.sign > 0, one.constraint, chunk)
-        found = found.at[at].set(number, mode="drop")
-    return jnp.tile(found, -(-count // max(chunk, 1)))[:count]
+        numbers = numbers.at[at].set(number, mode="drop")
+    return jnp.tile(numbers, -(-count // max(chunk, 1)))[:count]

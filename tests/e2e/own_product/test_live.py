@@ -51,7 +51,9 @@ def test_no_update_is_lost_while_the_server_is_started_again(
 def restart_server(product: Installation, sent: str) -> None:
     """End the server alone; what started it starts it again."""
     children = psutil.Process(product.process.pid).children()
-    server = next(child for child in children if child.cmdline()[1:] == ["-m", "server.main"])
+    server = next(
+        child for child in children if child.cmdline()[1:] == ["-m", "microcosmos_server.main"]
+    )
     getattr(server, sent)()
     server.wait(30)
     wait_until(product.answers, 60, "the server answers again")

@@ -3,12 +3,11 @@
 import csv
 import io
 
-import newick
 import numpy as np
 import pytest
 
 from microcosmos.archive import columns
-from microcosmos.archive.phylogeny import NONE, Birth, alife_csv, phylogeny
+from microcosmos.archive.phylogeny import NONE, Birth, alife_csv, births_of, phylogeny
 from microcosmos.archive.phylogeny import newick as written
 
 
@@ -19,7 +18,8 @@ def sha(number):
 def birth(number, *parents, run="a", generation=None, lost=NONE, fitness=1.0):
     then = number if generation is None else generation
     names = [sha(parent) for parent in parents]
-    return Birth(sha(number), names, run, then, lost, "neat", fitness)
+    ended = {} if lost == NONE else {run: lost}
+    return Birth(sha(number), names, run, then, ended, "neat", fitness)
 
 
 def random_births(count, seed=0):
@@ -94,21 +94,33 @@ def test_the_alife_table_is_read_back():
             read.add((row["taxon_label"], older["taxon_label"]))
     assert read == named(found)
     ended = [row["destruction_time"] for row in rows]
-    assert ended == ["" if i % 3 == 0 else str(i + 3) for i in range(1, 301)]
+    assert ended == ["inf" if i % 3 == 0 else str(i + 3) for i in range(1, 301)]
 
 
-def test_newick_trees_have_the_first_parents_and_the_generations_between():
-    found = phylogeny(random_births(300), ["a"])
-    first = {}
-    for child, parent in found.links.tolist():
-        first.setdefault(found.creature[child], found.creature[parent])
-    text = written(found)
-    nodes = newick.read(text)
-    assert sorted(one.label for one in nodes) == sorted(found.creature)
-    assert {one.label: one.parent for one in nodes if one.parent} == first
-    time = dict(zip(found.creature, found.time.tolist(), strict=True))
-    assert all(one.length == time[one.label] - time.get(one.parent, 0) for one in nodes)
-    assert text.count(";\n") == 4 == len(text.splitlines())
+@pytest.mark.parametrize(
+    ("ends", "time"),
+    [
+        ([("a", 2), ("a", None)], NONE),
+        ([("a", 2), ("a", 5)], 5),
+        ([("a", 3), ("b", None)], NONE),  # A fork keeps what its origin has lost.
+        ([("a", None), ("b", 3)], NONE),
+        ([("a", 3), ("b", 7)], 8),  # The fork begins with the birth, at 1.
+        ([("a", 9), ("b", 7)], 9),
+    ],
+)
+def test_a_creature_is_lost_with_its_last_cell_in_any_run(ends, time):
+    entries = [(sha(1), run, 1, end, "neat", 1.0) for run, end in ends]
+    for order in (entries, [*entries[:1], *entries[:0:-1]]):
+        found = phylogeny(births_of(order, {}), ["a", "b"], [("b", sha(1))])
+        assert (found.time.tolist(), found.destruction.tolist()) == ([1], [time])
+
+
+def test_a_creature_that_entered_no_archive_was_never_alive():
+    absent = Birth(sha(1), (), None, NONE, {}, None, None)
+    found = phylogeny([absent, birth(2, 1, generation=1_234_567)], ["a"])
+    first, second = csv.DictReader(io.StringIO(alife_csv(found)))
+    assert first["destruction_time"] == first["origin_time"]
+    assert (second["origin_time"], second["destruction_time"]) == ("1234567", "inf")
 
 
 def test_a_line_of_descent_of_any_length_is_written():

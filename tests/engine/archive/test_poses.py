@@ -63,6 +63,8 @@ def test_a_stream_returns_from_its_bytes():
         (lambda data: b"", "header"),
         (lambda data: b"\xff\xff\xff\xff" + data[4:], "header"),
         (lambda data: data.replace(b"poses/1", b"poses/9"), "format"),
+        (lambda data: data.replace(b'"frames"', b'"Frames"'), "whole header; KeyError"),
+        (lambda data: data.replace(b'"nodes": 5', b'"nodes":{}'), "whole header; TypeError"),
     ],
 )
 def test_other_bytes_are_refused(damage, named):
@@ -87,6 +89,10 @@ def test_streams_return_from_the_columns_of_an_archive(sizes):
     tree = {"archive": {"poses": columns(given), "creature": names}}
     found = streams(tree, {"spec": SPEC})
     assert all(equal(a, b) for a, b in zip(found, given, strict=True))
+    for outside in (-1, 5) if sizes else ():
+        tree["archive"]["poses"]["edges"][0, 0, 1] = outside
+        with pytest.raises(ValueError, match=f"must connect nodes of the body; got {outside}"):
+            streams(tree, {"spec": SPEC})
 
 
 def test_exports_are_in_steps_and_cells():

@@ -52,12 +52,6 @@ def test_the_order_of_creatures_and_measures_has_no_effect(seed):
         assert np.array_equal(found.measures[name], again.measures[name])
 
 
-def test_units_have_no_effect():
-    (one,), _ = principal(made(), [1])
-    (other,), _ = principal(made(unit=1024.0), [1])
-    assert one.loadings == pytest.approx(other.loadings, abs=1e-12)
-
-
 def test_a_measure_without_values_is_left_out_unless_it_is_named():
     beats = np.ones(COUNT) * np.arange(COUNT)
     beats[:50] = np.nan

@@ -10,8 +10,8 @@ from microcosmos import search
 from microcosmos.archive.axes import BINS, Axis, axis, of_spec
 from microcosmos.archive.population import Creatures, creatures
 from microcosmos.archive.reprojection import over, reproject
+from microcosmos.measures import MEASURES
 from microcosmos.spec import Archive, Descriptor, QualityDiversity
-from microcosmos.spec.measures import MEASURES
 
 AXES = (Axis("mach", 1e-3, 1.0, 5, "log10"), Axis("symmetry", -1.0, 1.0, 4))
 MACH = Descriptor(name="mach", low=0.01, bins=7)
@@ -145,14 +145,3 @@ def test_an_axis_has_the_ends_of_the_archive_or_of_the_measure():
 def test_wrong_names_and_bins_are_refused(asked, message):
     with pytest.raises(ValueError, match=message):
         over(made(given()), **asked)
-
-
-def test_some_creatures_keep_the_axes_that_all_have_learned():
-    found = made(given())
-    projected, _ = over(found, ["pc1"], components_of=["mach", "symmetry"])
-    all_of_them = projected.creatures
-    some = all_of_them.among(given()["names"][:50])
-    assert len(some) == 50
-    assert set(some.names) < set(all_of_them.names)
-    again = reproject(some, projected.axes)
-    assert 0 < again.coverage <= projected.coverage

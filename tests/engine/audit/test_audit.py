@@ -7,12 +7,12 @@ import pytest
 
 from microcosmos import bodies, neat, spec
 from microcosmos.archive import creature
-from microcosmos.audit.derivatives import gradient, report_gradient
+from microcosmos.audit.derivatives import report_gradient
 from microcosmos.audit.physics import audit
 from microcosmos.audit.variants import reciprocal, refine
 from microcosmos.build import build_encoding, build_stroke, build_task, identity_template
-from microcosmos.experiments.lineage import identity
 from microcosmos.filaments import Rest
+from microcosmos.search.parts.records import identity
 
 GAITS = spec.Gaits(period=500, cycles=2)
 
@@ -127,8 +127,3 @@ def test_the_report_agrees_with_finite_differences_and_tells_of_time_and_starts(
     assert 0 <= report.sign_agreement <= 1
     assert -1 <= report.cosine <= 1
     assert report.limited == 0
-
-
-def test_a_derivative_by_absent_genes_is_refused(file):
-    with pytest.raises(ValueError, match="`by` must be of"):
-        gradient(file, by=("weights",))

@@ -54,15 +54,6 @@ def test_a_grown_body_that_is_built_again_moves_as_before(softest):
     np.testing.assert_allclose(seen.centre, centre, atol=1e-2 * moved)
 
 
-def test_rest_angles_are_those_of_the_body_as_it_starts():
-    *_, body, _ = rebuilt(SOFT)
-    laid_out = bodies.layout(body)
-    turn = laid_out.angle[body.joints[:, 1]] - laid_out.angle[body.joints[:, 0]]
-    error = (turn - body.rest_angle + np.pi) % (2 * np.pi) - np.pi
-    np.testing.assert_allclose(error, 0, atol=1e-6)
-    np.testing.assert_allclose(body.rest_length, 1, atol=1e-5)
-
-
 def test_soft_joints_and_repulsion_act_in_the_same_time_on_a_finer_grid():
     scene, driven, _, body, rest = rebuilt(SOFT)
     fine = refine(scene, rest, body)[0].world

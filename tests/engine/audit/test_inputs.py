@@ -33,15 +33,14 @@ SMALL = {
 }
 VECTORS = {"search": {"emitters": [{"operator": "iso+line"}]}}
 QUICK = {
+    "a wave of one joint, which is −0": {"body": {"nodes": 3}},
     "a network, four trials": {"task": {"trials": 4}},
     "direct": VECTORS | {"control": {"encoding": "direct"}},
 }
 CASES = {
     "a network": {},
     "a recurrent network": {"control": {"recurrent": True}},
-    "a body that grows": {"control": {"encoding": "cppn-body"}},
     "a plan": {"control": {"encoding": "body-graph"}, "body": {"builder": "grown"}},
-    "weights": VECTORS | {"control": {"encoding": "weights"}},
     "a sense, a world with energy that is taken": {
         "world": {"energy": {"consume": True, "diffusion": 0.05}},
         "control": {"sense_energy": True},
@@ -116,6 +115,11 @@ def swimmers(parts):
     ]
 
 
+def texts(numbers):
+    """Return the text of each number, in which −0 differs from 0."""
+    return {name: repr(float(number)) for name, number in numbers.items()}
+
+
 def cases(quick, others):
     long = [pytest.param(one, id=name, marks=pytest.mark.long) for name, one in others.items()]
     return [*(pytest.param(one, id=name) for name, one in quick.items()), *long]
@@ -130,7 +134,8 @@ def test_the_page_finds_every_recorded_number_of_twenty_creatures(parts, evaluat
     answers = evaluated([evaluation_inputs(file) for file in files])
     for file, answer in zip(files, answers, strict=True):
         figures, measured = answer["found"]["figures"], file["measured"]
-        assert figures == measured["measures"] | {"fitness": measured["fitness"]}
+        recorded = measured["measures"] | {"fitness": measured["fitness"]}
+        assert texts(figures) == texts(recorded)
 
 
 def compare_gaits(files, evaluated):
@@ -140,27 +145,13 @@ def compare_gaits(files, evaluated):
     for file, answer in zip(files, answers, strict=True):
         figures, measured = answer["found"]["figures"], file["measured"]
         recorded = measured["measures"] | {"fitness": measured["fitness"]}
-        assert {name: figures[name] for name in recorded} == recorded
+        assert texts({name: figures[name] for name in recorded}) == texts(recorded)
 
 
 @pytest.mark.parametrize("parts", cases(QUICK_SWEEPS, SWEEPS))
 def test_the_page_finds_every_recorded_number_of_the_five_swimmers(parts, evaluated):
     if not device.kernel_version():
         pytest.skip("microcosmos-kernels is not installed: no compiler?")
-    compare_gaits(swimmers(parts), evaluated)
-
-
-@pytest.mark.long
-def test_the_page_finds_every_recorded_number_of_swimmers_without_limits(
-    evaluated, monkeypatch
-):
-    if not device.kernel_version():
-        pytest.skip("microcosmos-kernels is not installed: no compiler?")
-    free = spec.Coupling(limits=False, kernel="peskin")
-    monkeypatch.setattr(spec.Gaits, "coupling", lambda *_: free)
-    # Cilia diverge without limits.
-    kept = {"swimmers": ["worm", "tadpole", "ray", "jellyfish"], "period": 240}
-    parts = kept | {"viscosities": [0.05, 0.1, 0.2, 0.5, 2.0]}
     compare_gaits(swimmers(parts), evaluated)
 
 

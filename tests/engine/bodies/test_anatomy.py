@@ -63,21 +63,6 @@ def test_arms_of_a_star_are_numbered_from_its_right_to_its_left():
     np.testing.assert_allclose(found.y[[4, 10]], [1, -1])
 
 
-def test_a_fork_has_the_means_of_the_limbs_that_meet_there():
-    found = bodies.anatomy(bodies.tree(2, 2, 2, 1.0, 1.0))
-    np.testing.assert_allclose(found.position, [-1, 0, -1 / 3, 0, 1, 0, 1], atol=1e-12)
-    np.testing.assert_allclose(found.limb, [0, 0, 0, -1, -1, 1, 1])
-    np.testing.assert_array_equal(found.side, [0, 0, 0, -1, -1, 1, 1])
-    np.testing.assert_allclose(found.distance, [0, 0.25, 0.5, 0.75, 1, 0.75, 1])
-
-
-def test_a_loop_at_a_branch_is_a_limb():
-    found = bodies.anatomy(SWIMMERS["tadpole"]().body)
-    np.testing.assert_allclose(found.position[:14], np.arange(14) / 7 - 1, atol=1e-12)
-    np.testing.assert_allclose(found.position[14:], np.arange(1, 25) / 12 - 1, atol=1e-12)
-    np.testing.assert_array_equal(found.limb, [0, *[-1] * 13, *[1] * 24])
-
-
 @pytest.mark.parametrize("name", BODIES)
 def test_mirrored_nodes_have_opposite_sides_and_limbs(name):
     body = BODIES[name]

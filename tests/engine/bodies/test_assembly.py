@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies
-from microcosmos.bodies import extent
+from microcosmos.bodies import extent, reach
 
 pytestmark = pytest.mark.fast
 
@@ -58,14 +58,6 @@ def test_combined_bodies_keep_their_own_edges_joints_and_stiffness():
         np.testing.assert_allclose(error, 0, atol=1e-12)
 
 
-def test_groups_of_creatures_are_numbered_on():
-    pair = bodies.combined([PARTS[0], bodies.placed(PARTS[1], (20, 0))])
-    third, fourth = bodies.placed(PARTS[2], (40, 0)), bodies.placed(pair, (70, 0))
-    body = bodies.combined([pair, third, fourth])
-    sizes = [len(PARTS[i].positions) for i in (0, 1, 2, 0, 1)]
-    np.testing.assert_array_equal(body.member, np.repeat(np.arange(5), sizes))
-
-
 def test_creatures_on_top_of_each_other_are_refused():
     with pytest.raises(ValueError, match="nodes 0 and 5 are 0 apart"):
         bodies.combined([PARTS[2], PARTS[2]])
@@ -97,13 +89,6 @@ def test_joints_of_a_subdivided_body_are_the_original_ones_and_straight_new_ones
     np.testing.assert_array_equal(fine.body.bend[new], 1)
 
 
-@pytest.mark.parametrize("closed", [True, False])
-def test_the_arc_of_a_subdivided_filament_is_even(closed):
-    body = bodies.ring(9, 1.0) if closed else bodies.chain(9, 1.0)
-    arc = np.sort(bodies.subdivided(body).body.arc)
-    np.testing.assert_allclose(arc, np.arange(len(arc)) / (18 if closed else 16))
-
-
 def test_a_thinned_chain_keeps_its_ends_and_its_order_and_a_small_one_all_nodes():
     body = bodies.chain(8, 1.0)
     positions, edges = bodies.thinned(body, 8)
@@ -113,13 +98,6 @@ def test_a_thinned_chain_keeps_its_ends_and_its_order_and_a_small_one_all_nodes(
     assert len(positions) <= 102
     assert np.ptp(positions[:, 0]) == pytest.approx(1000)
     np.testing.assert_array_equal(edges, [(i, i + 1) for i in range(len(positions) - 1)])
-
-
-def test_a_thinned_ring_is_still_closed():
-    positions, edges = bodies.thinned(bodies.ring(1000, 1.0), 100)
-    np.testing.assert_array_equal(np.bincount(edges.ravel()), np.full(len(positions), 2))
-    radius = np.hypot(*(positions - positions.mean(0)).T)
-    np.testing.assert_allclose(radius, 1 / (2 * np.sin(np.pi / 1000)), rtol=1e-6)
 
 
 def test_a_thinned_tree_keeps_every_branch():
@@ -136,3 +114,14 @@ def test_a_body_reaches_as_far_as_its_longest_way_along_edges():
     np.testing.assert_allclose(extent(bodies.ring(12, 1.0)), 6)
     np.testing.assert_allclose(extent(bodies.star(5, 4, 1.0)), 8)
     np.testing.assert_allclose(extent(bodies.tree(3, 2, 5, 1.0, 0.9)), 20)
+
+
+@pytest.mark.parametrize("counts", [(3, 30), (30, 3)])
+def test_of_unconnected_filaments_the_longest_counts(counts):
+    rows = [[(x, 5.0 * row) for x in range(count)] for row, count in enumerate(counts)]
+    first, second = ([(i, i + 1) for i in range(count - 1)] for count in counts)
+    edges = [*first, *((i + counts[0], j + counts[0]) for i, j in second)]
+    both = bodies.graph(np.concatenate(rows), edges)
+    assert extent(both) == 29
+    assert reach(both) == pytest.approx(np.hypot(29, 5))
+    assert reach(bodies.ring(12, 1.0)) == extent(bodies.ring(12, 1.0))

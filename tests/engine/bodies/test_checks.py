@@ -45,6 +45,14 @@ MALFORMED = {
     "an edge between creatures": (change("member", 5, 1), "edge 4 joins creatures 0 and 1"),
     "edges out of order": (two(edges=SWAPPED, **NO_JOINTS), "order of their creatures"),
     "edges that are fractions": (two(edges=SWAPPED + 0.0), "whole numbers, got float64"),
+    "a drawn edge to itself": (
+        lambda: bodies.graph([(0, 0), (1, 0), (2, 0)], [(0, 1), (1, 2), (2, 2)]),
+        "`edges` must be pairs of different nodes, pair 2 is 2 twice",
+    ),
+    "two drawn nodes in one place": (
+        lambda: bodies.graph([(0, 0), (1, 0), (1, 0)], [(0, 1), (1, 2)]),
+        "`edges` must have a length, edge 1 has none",
+    ),
     "no edges": (
         lambda: bodies.graph([(0, 0), (1, 0)], []),
         "at least two nodes and one edge, got 2 and 0",
@@ -75,6 +83,7 @@ def test_crowding_is_found_exactly_where_it_is(seed):
     nodes = random.uniform(0, 4, (12, 2))
     gaps = np.hypot(*(nodes[:, None] - nodes[None]).transpose(2, 0, 1))
     nearest = gaps[np.triu_indices(12, 1)].min()
-    bodies.graph(0.251 / nearest * nodes, [(0, 1)])
+    edges = [(i, i + 1) for i in range(11)]
+    bodies.graph(0.251 / nearest * nodes, edges)
     with pytest.raises(ValueError, match=r"0\.249 apart"):
-        bodies.graph(0.249 / nearest * nodes, [(0, 1)])
+        bodies.graph(0.249 / nearest * nodes, edges)

@@ -30,7 +30,8 @@ def random_body(seed):
     lattice = np.stack(np.meshgrid(np.arange(6.0), np.arange(6.0)), -1).reshape(-1, 2)
     nodes = 3 * lattice + random.uniform(-1, 1, lattice.shape)
     pairs = [(i, j) for i in range(36) for j in range(i) if random.random() < 0.08]
-    return bodies.graph(nodes, pairs)
+    joined, pairs = np.unique(pairs, return_inverse=True)
+    return bodies.graph(nodes[joined], pairs.reshape(-1, 2))
 
 
 def world(*parts):
@@ -76,11 +77,6 @@ def test_every_constraint_of_a_random_body_has_one_colour(seed):
     require_colourings(body)
 
 
-def test_every_constraint_of_different_creatures_has_one_colour():
-    parts = (random_body(0), bodies.ring(9, 1.0), random_body(0), bodies.chain(2, 1.0))
-    require_colourings(world(*parts))
-
-
 def test_equal_creatures_have_equal_colours_and_need_no_more_of_them():
     one = random_body(3)
     many = world(*[one] * 5)
@@ -94,11 +90,3 @@ def test_equal_creatures_have_equal_colours_and_need_no_more_of_them():
 def test_a_chain_needs_two_colours_and_an_odd_ring_three():
     for (pairs, members), needed in ((path(33), 2), (circle(33), 3)):
         assert len(bodies.colour(pairs, np.zeros(members, int))) == needed
-
-
-def test_a_ring_with_branches_needs_few_colours():
-    circle, lines = "M 6 0 A 6 6 0 0 1 -6 0 A 6 6 0 0 1 6 0 Z", "M 0 6 L 0 12 M 0 -6 L 0 -12"
-    body = bodies.svg(f"{circle} {lines}", 1.0)
-    assert np.bincount(body.joint_nodes).max() == 3
-    assert len(body.edge_colours) <= 5
-    assert len(body.joint_colours) <= 5

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from microcosmos import bodies, filaments
-from microcosmos.bodies import relaxation as module
-from microcosmos.bodies.relaxation import relaxation
 from microcosmos.build import build_rods
 from microcosmos.filaments import projection
+from microcosmos.quantities import bodies as module
+from microcosmos.quantities.bodies import relaxation
 
 
 def of_a_chain(joints, bend):
@@ -42,15 +42,6 @@ def test_a_long_soft_chain_relaxes_by_diffusion_also_where_few_modes_are_compute
     assert joints > module.DENSE
     diffusive = 2 / (bend * (np.pi / (joints + 1)) ** 2)
     assert uniform(bodies.chain(joints + 2, 1.0), bend) == pytest.approx(diffusive, rel=2e-3)
-
-
-@pytest.mark.fast
-def test_one_joint_decays_alone_and_none_has_nothing_to_decay():
-    # Both edges of a joint correct half of the error each: a sweep leaves 1 − k.
-    assert uniform(bodies.chain(3, 1.0), 0.3) == pytest.approx(-1 / log(0.7), rel=1e-9)
-    assert uniform(bodies.chain(3, 1.0), 1.0) == 0
-    assert uniform(bodies.chain(2, 1.0), 1.0) == 0
-    assert uniform(bodies.chain(5, 1.0), 0.0) == np.inf
 
 
 BODIES = {

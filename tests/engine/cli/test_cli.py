@@ -1,5 +1,6 @@
 """Commands that carry out, resume and extend runs, repeat creatures and refuse mistakes."""
 
+import gzip
 import json
 import os
 import signal
@@ -15,8 +16,10 @@ import pytest
 from small_spec import SMALL_SCENE
 
 from microcosmos.archive.file import read_table
-from microcosmos.cli import pictures
+from microcosmos.cli import pictures, remote, reproject
+from microcosmos.cli.app import failing
 from microcosmos.spec import World
+from microcosmos.viz.figures import maps
 
 run_command = import_module("microcosmos.cli.run")
 
@@ -30,7 +33,7 @@ def run(tmp_path):
     environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": cache}
 
     def start(*arguments):
-        command = [sys.executable, "-m", "microcosmos.cli", *arguments]
+        command = [sys.executable, "-m", "microcosmos", *arguments]
         pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
         return subprocess.Popen(command, cwd=tmp_path, env=environment, **pipes)
 
@@ -78,12 +81,26 @@ def test_a_stopped_and_extended_run_ends_with_the_bytes_of_a_longer_one(run, inv
         ("figure empty.json x.mp4", "microcosmos[figures]"),
         ("figure empty.json x.gif --audit empty.json", "`--audit` needs a .png of a creature"),
         ("figure empty.json x.png --audit empty.json", "`--audit` needs a report of"),
+        ("figure curves . x.pdf", "FILE must be a file, no folder or pipe; got ."),
+        ("figure kinds nowhere.h5 x.pdf", "FILE must exist; not found: nowhere.h5"),
+        ("evolve run.h5", "run.h5: JSON must be text in UTF-8; got other bytes"),
+        ("evolve demo --out .", "--out: a file is needed, got the folder ."),
+        ("evolve demo --certificate x.pem", "--certificate needs --cluster"),
+        ("reproject empty.json", "empty.json: an archive file must be HDF5"),
+        (f"picture --text {'a' * 101}", "--text needs at most 100 characters"),
+        (f"evolve {'a' * 300}", "SPEC: [Errno 36] File name too long"),
+        ("picture cut.gz --number 0", "`path` must be a whole gzip file, got 'cut.gz'"),
+        ("picture bad.gz --number 0", "`path` must be a whole gzip file, got 'bad.gz'"),
     ],
 )
 def test_mistakes_are_refused_with_their_reason(command, words, invoke, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "av", None)
     (tmp_path / "wrong.json").write_text(json.dumps(SPEC | {"world": {"viscosity": -1}}))
     (tmp_path / "empty.json").write_text("{}")
+    packed = gzip.compress(b"pictures" * 9)
+    (tmp_path / "cut.gz").write_bytes(packed[:-9])
+    (tmp_path / "bad.gz").write_bytes(packed[:10] + b"\xff" * 9 + packed[19:])
+    (tmp_path / "run.h5").write_bytes(b"\x89HDF\r\n\x1a\n")
     (tmp_path / "creature.replay").write_bytes(b"nothing")
     assert words in invoke(*command.split(), code=2)
 
@@ -116,6 +133,8 @@ def test_evolve_sets_fields_and_makes_the_folder_of_its_file(invoke, tmp_path, m
     assert carried[0][0].world.viscosity == 0.07
     assert (tmp_path / "new" / "folder").is_dir()
     invoke(*command, "--set", "world.viscosity=-1", code=2)
+    # A mistake is told before JAX starts.
+    monkeypatch.setattr("microcosmos.device.prepare", lambda **_: pytest.fail("too early"))
     (tmp_path / "choices.json").write_text('{"choices": []}')
     refused = invoke(*command, "--choices", "choices.json", code=2)
     assert "--choices: choices.json: `creatures` needs a value" in refused
@@ -148,6 +167,38 @@ def test_a_filament_folds_into_a_packed_picture_and_is_drawn(run, tmp_path):
     assert "FILE or --text" in finished(run("picture"), code=2)
 
 
+def test_a_closed_pipe_is_left_to_click_which_ends_quietly():
+    for context in (failing(), remote._connected()):
+        with pytest.raises(BrokenPipeError), context:
+            raise BrokenPipeError
+
+
+@pytest.mark.parametrize("given", ["--version", "--help"])
+@pytest.mark.parametrize(
+    ("shell", "said"),
+    [
+        (">&-", "Standard output must be open; to discard it, add >/dev/null.\n"),
+        ("| true; exit ${PIPESTATUS[0]}", ""),
+    ],
+)
+def test_output_that_nobody_can_read_is_an_error_in_at_most_a_sentence(given, shell, said):
+    line = f"{sys.executable} -m microcosmos {given} {shell}"
+    done = subprocess.run(["bash", "-c", line], stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (1, said)
+
+
+def test_a_command_without_its_library_says_what_to_install(invoke, monkeypatch):
+    def draw(*_):
+        raise ImportError('matplotlib is needed: pip install "microcosmos[figures]"')
+
+    monkeypatch.setattr(maps, "draw_reprojections", draw)
+    monkeypatch.setattr(reproject, "_read", lambda *_: (None, [], {}, ""))
+    monkeypatch.setattr(reproject, "over", lambda *_: (None, []))
+    monkeypatch.setattr(reproject, "_print", lambda *_: None)
+    text = invoke("reproject", "a.h5", "--figure", "a.png", code=1)
+    assert text == 'matplotlib is needed: pip install "microcosmos[figures]"'
+
+
 def test_words_become_an_obstacle(invoke):
     packed = json.loads(invoke("picture", "--text", "o", "--obstacle"))
     solid = World(width=64, height=64, obstacles=[packed]).solid
@@ -174,3 +225,6 @@ def test_mnist_is_fetched_once_and_verified(invoke, tmp_path, monkeypatch):
     monkeypatch.setattr(pictures, "MNIST_FILES", {"b": digest})
     invoke("data", "mnist", "mnist", code=2)
     assert not (tmp_path / "mnist" / "b").exists()
+    (tmp_path / "mnist" / "b").mkdir()
+    text = invoke("data", "mnist", "mnist", code=2)
+    assert "a file is needed, got the folder mnist/b" in text

@@ -5,13 +5,16 @@ from typing import Any
 
 import httpx
 import pytest
+import typer
 from rich.console import Console
 from typer.testing import CliRunner
 
 from microcosmos.cli import app, remote, specs
-from microcosmos.client import NotFound
+from microcosmos.client import NotFound, Sweep, polling
+from microcosmos.client.sweep import Summary
 from microcosmos.version import VERSION
 
+RUN = "0f3c1a2b-0000-4000-8000-000000000001"
 SHA = "ab" * 32
 TOKEN = {"id": "70ce0000-0000-4000-8000-000000000001", "name": "laptop", "scope": "write"}
 SWEEP = {"id": "5eed0000-0000-4000-8000-000000000001", "name": None, "cases": []}
@@ -34,6 +37,7 @@ def command(fake, record, monkeypatch):
         ("GET", "experiments"): [{"experiment": "quality-diversity", "presets": [preset]}],
         ("GET", "runs"): {"items": [record], "next": None},
         ("GET", run): record,
+        ("GET", f"{run}/generations"): {name: [] for name in polling.CURVES},
         ("POST", "sweeps"): SWEEP,
         ("GET", f"sweeps/{SWEEP['id']}"): SWEEP,
         ("POST", f"sweeps/{SWEEP['id']}/pause"): SWEEP,
@@ -120,11 +124,6 @@ def test_the_version_is_told():
     assert CliRunner().invoke(app, ["--version"]).stdout.strip() == VERSION
 
 
-def test_extending(command, record):
-    _, requests = command("extend", "0f3c", "20")
-    assert requests[-1][:3] == ("POST", f"runs/{record['id']}/extend", {"generations": 20})
-
-
 def test_forking_elites_into_another_world(command, record):
     _, requests = command(
         "fork", "0f3c", "--elite", SHA, "--set", "world.viscosity=0.3", "--name", "thick"
@@ -189,6 +188,50 @@ def test_names_are_never_read_as_markup_and_ids_never_broken(command, record, mo
     assert record["id"][:8] in command("runs")[0].stdout
 
 
+def test_other_peoples_text_cannot_act_on_a_terminal(command, record):
+    shown = r"evil\u001b]0;t\u001b\ \u202ewo\u000alines"
+    record["name"] = "evil\x1b]0;t\x1b\\ \u202ewo\nlines"
+    assert shown in command("runs")[0].stdout
+    assert f"“{shown}”: running. Delete?" in command("delete", "0f3c", input="n")[0].stderr
+    assert f"“{shown}”: running" in command("pause", "0f3c")[0].stderr
+    text = command("runs", "--json")[0].stdout
+    assert not set("\x1b\u202e") & set(text)
+    assert json.loads(text)[0]["name"] == record["name"]
+
+
+def test_a_record_stays_json_while_its_run_is_watched(command, record):
+    record["status"] = "finished"
+    done, _ = command("extend", "0f3c", "5", "--json", "--watch")
+    assert json.loads(done.stdout) == record
+    assert "finished" in done.stderr
+    assert not command("watch", "0f3c")[0].stdout
+
+
+def test_a_table_of_a_sweep_rounds_no_value_of_a_case(command, monkeypatch):
+    final = {"median": 3.14159, "low": 3.0, "high": 3.25}
+    cases = [
+        {"values": {"a.b": x, "body": {"nodes": 8}}, "members": [], "finals": {"best": final}}
+        for x in (0.100049, 0.100041)
+    ]
+    rows = [{"a.b": 0.100049, "best": None, "run": RUN}]
+    monkeypatch.setattr(Sweep, "summary", lambda _: Summary(cases))
+    monkeypatch.setattr(Sweep, "rows", lambda _: rows)
+    text = command("sweep", "5eed")[0].stdout
+    assert "0.100049" in text
+    assert "0.100041" in text
+    assert text.count("{'nodes': 8}") == 2
+    assert text.count("3.142 (3 to 3.25)") == 2
+    assert "0.100049" in command("sweep", "5eed", "--runs")[0].stdout
+    assert json.loads(command("sweep", "5eed", "--runs", "--json")[0].stdout) == rows
+
+
+def test_a_spec_is_read_from_standard_input(command):
+    _, requests = command("submit", "-", "--seeds", "2", input='{"seed": 3}')
+    assert requests[-1].document["spec"] == {"seed": 3}
+    refused, _ = command("submit", "-", input="[]", code=1)
+    assert refused.stderr.strip() == "standard input needs a spec as a JSON object; got []"
+
+
 def test_an_id_may_be_a_sweeps(command, record):
     assert command("pause", "0f3c")[1][-1].path == f"runs/{record['id']}/pause"
     paused, requests = command("pause", "5eed")
@@ -213,6 +256,27 @@ def test_an_id_that_may_be_a_runs_or_a_sweeps_is_refused(command, record, monkey
 )
 def test_values_are_json_or_text(text, value):
     assert specs.applied({}, [f"a.b={text}"]) == {"a": {"b": value}}
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("0.05,ours", [0.05, "ours"]),
+        ("[1, 2]", [1, 2]),
+        ('{"a": 1, "b": 2}', [{"a": 1, "b": 2}]),
+        ('"a,b"', ["a,b"]),
+        ("7", [7]),
+        ("ours", ["ours"]),
+    ],
+)
+def test_commas_part_the_values_of_a_sweep_but_no_json(text, values):
+    assert specs.grid([f"a.b={text}"]) == {"a.b": values}
+
+
+@pytest.mark.parametrize("setting", ["a.0.x=1", "b.x=1", "a.0.x.y=1"])
+def test_a_number_has_no_fields(setting):
+    with pytest.raises(typer.BadParameter, match=r"has no fields; it is 0\.5"):
+        specs.applied({"a": [0.5], "b": 0.5}, [setting])
 
 
 def test_items_of_a_list_are_set_by_number():

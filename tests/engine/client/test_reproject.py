@@ -46,6 +46,12 @@ def test_a_file_has_the_measures_of_its_elites_only(archive):
     assert command(archive, "--of", "elites", "--axes", "mach").stderr.count("\n") == 1
 
 
+def test_a_file_needs_no_server(archive, monkeypatch):
+    monkeypatch.setenv("MICROCOSMOS_TOKEN", "a b")
+    assert "bins" in command(archive, "--axes", "mach").stderr
+    assert "`token` must be ASCII" in command("0f3c", code=1).stderr
+
+
 def test_components_are_printed_and_drawn(archive, tmp_path):
     out = tmp_path / "map.png"
     done = command(archive, "--figure", out)
@@ -55,10 +61,3 @@ def test_components_are_printed_and_drawn(archive, tmp_path):
     caption = out.with_suffix(".caption.txt").read_text()
     assert caption.startswith("The fittest creature of each of 24 × 24 cells over principal")
     assert "of archive.h5: present elites, " in caption
-
-
-def test_a_figure_needs_two_axes_and_a_file_an_archive(archive, tmp_path):
-    done = command(archive, "--axes", "mach", "--figure", tmp_path / "map.png", code=1)
-    assert "`figure` needs two axes, got 1" in done.stderr
-    archive.write_bytes(file.dump({}, {"format": file.FORMAT}))
-    assert "an archive is needed" in command(archive, code=1).stderr

@@ -1,14 +1,14 @@
 """Views of a run in terminals and notebooks."""
 
-import re
 import sys
 from types import SimpleNamespace
 
+import httpx
 import numpy as np
 import pytest
 from rich.console import Console
 
-from microcosmos.client import NoAnswer, drawing, notebook, polling, terminal, views
+from microcosmos.client import NoAnswer, ServerError, drawing, polling, views
 from microcosmos.client.columns import Columns, array
 from microcosmos.client.formatting import duration
 from microcosmos.client.polling import RunState
@@ -45,15 +45,9 @@ def test_braille_dots_are_those_of_the_curve(values, size, expected):
     assert dots(drawing.braille(values, *size)) == expected
 
 
-def test_unknown_values_alone_draw_nothing():
-    assert drawing.braille([None], 3, 1) == ["⠀⠀⠀"]
-    assert drawing.polyline([None, 1.0, 3.0], 10, 4) == "5.0,4.0 10.0,0.0"
-    assert drawing.polyline([], 10, 4) == ""
-
-
 def shown(state, width=100):
     console = Console(width=width, record=True, file=sys.stderr)
-    console.print(terminal.drawn(state, width))
+    console.print(views.drawn(state, width))
     return console.export_text()
 
 
@@ -75,27 +69,31 @@ def test_a_terminal_shows_the_state_within_its_width(record):
     assert "1 min 15 s left" in line
 
 
-def test_trouble_and_reasons_are_shown(record):
-    waits = {"status": "queued", "waiting_reason": "no worker is free", "eta_seconds": None}
-    text = shown(RunState(record | waits, {}, "No server answers."))
-    assert "queued: no worker is free" in text
-    assert "No server answers." in text
-    assert "evaluations/s" not in text
-
-
-def test_a_table_shows_its_summary(record):
-    table = record | {"qd_score": None, "summary": {"fastest_speed": 0.25, "name": "x"}}
-    assert "fastest speed 0.25" in shown(RunState(table))
-
-
 def test_plain_lines_come_when_something_changes(record, capsys):
     states = ((0.5, "running"), (0.51, "running"), (0.6, "running"), (1, "failed"))
     with views.lines() as show:
         for progress, status in states:
             show(RunState(record | {"progress": progress, "status": status, "error": "why"}))
-    lines = capsys.readouterr().out.splitlines()
+    said = capsys.readouterr()
+    lines = said.err.splitlines()
     assert len(lines) == 3
     assert "failed: why" in lines[-1]
+    assert not said.out  # It is for data.
+
+
+EVIL = "a\x1b[2J\x9b2J\u202eb\nc"
+SHOWN = r"a\u001b[2J\u009b2J\u202eb\u000ac"
+
+
+@pytest.mark.parametrize(
+    "field", ["name", "experiment", "status", "waiting_reason", "error", "warning"]
+)
+def test_characters_that_steer_a_terminal_are_shown(record, field):
+    state = RunState(record | {field: EVIL}, {}, problem=EVIL)
+    assert views.line(state).count(SHOWN) == 1 + (field != "warning")
+    assert "\x1b" not in views.line(state)
+    assert shown(state).count(SHOWN) == 2
+    assert "\x1b" not in shown(state)
 
 
 @pytest.fixture
@@ -122,9 +120,9 @@ def ipython(monkeypatch):
 
 
 def test_a_notebook_brings_one_display_up_to_date(ipython, record):
-    assert views.choose() is notebook.notebook
+    assert views.choose() is views.notebook
     named = record | {"name": "<script>"}
-    with notebook.notebook() as show:
+    with views.notebook() as show:
         show(RunState(named, CURVES))
         show(RunState(named | {"status": "finished"}, CURVES))
     first, last = ipython[0]._repr_html_(), ipython[-1]._repr_html_()
@@ -137,8 +135,8 @@ def test_a_notebook_brings_one_display_up_to_date(ipython, record):
 def test_without_a_terminal_or_notebook_there_are_lines(monkeypatch):
     monkeypatch.delitem(sys.modules, "IPython", raising=False)
     assert views.choose() is views.lines
-    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
-    assert views.choose() is terminal.terminal
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert views.choose() is views.terminal
 
 
 def test_columns_are_arrays_with_gaps_as_nan():
@@ -148,30 +146,6 @@ def test_columns_are_arrays_with_gaps_as_nan():
     assert found["d"][0] == [1]
     assert dict(found).keys() == {"a", "b", "c", "d"}
     assert array([]).dtype == float
-
-
-def test_a_map_has_its_cells_where_they_are():
-    axes = [{"name": "turning", "bins": 4}, {"name": "<b>", "bins": 2}]
-    cells, fitness = np.array([0, 3, 6]), np.array([1.0, 2.0, 3.0])
-    picture = drawing.archive_map(axes, cells, fitness, "a caption")
-    squares = re.findall(r'x="([\d.]+)" y="([\d.]+)" .*? fill="(#\w+)"', picture)
-    assert squares == [
-        ("0.00", "160.00", "#440154"),
-        ("80.00", "0.00", "#21918c"),
-        ("240.00", "160.00", "#fde725"),
-    ]
-    assert "<b>" not in picture
-    assert "<rect" not in drawing.archive_map(axes, np.array([]), np.array([]), "")
-
-
-def test_columns_are_a_data_frame_if_pandas_is_installed(monkeypatch):
-    pytest.importorskip("pandas")
-    found = Columns({"a": [1, 2], "b": [None, 0.5]}).to_pandas()
-    assert list(found.columns) == ["a", "b"]
-    assert found["a"].tolist() == [1, 2]
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ImportError, match=r"pip install .pandas"):
-        Columns({"a": [1]}).to_pandas()
 
 
 @pytest.mark.parametrize(
@@ -185,17 +159,26 @@ def test_durations_have_two_units(seconds, words):
 def test_a_sweep_is_watched_through_an_outage(fake, monkeypatch):
     monkeypatch.setattr(polling, "POLL", 0.0)
     sweep = {"id": "5eed", "name": None, "total": 2}
-    states = [{"queued": 2}, {"running": 1, "failed": 1}, None, None]
+    away = [NoAnswer("No server answers."), ServerError("The database does not answer.", 503)]
+    states = [{"queued": 2}, {"running": 1, "failed": 1}, *away]
     answers = iter([*states, {"finished": 1, "failed": 1}])
 
     def read(path):
-        if (counts := next(answers)) is None:
-            raise NoAnswer("No server answers.")
+        if isinstance(counts := next(answers), ServerError):
+            raise counts
         return sweep | {"status_counts": counts}
 
     connection = fake({}).client.connection
     monkeypatch.setattr(connection, "read", read)
     states = polling.follow_sweep(connection, "5eed")
     shown = [(state.record["status"], state.problem) for state in states]
-    lost = ("running", "No server answers.")
-    assert shown == [("queued", None), ("running", None), lost, lost, ("failed", None)]
+    lost = [("running", str(error)) for error in away]
+    assert shown == [("queued", None), ("running", None), *lost, ("failed", None)]
+
+
+def test_a_server_that_fails_ends_the_watching(fake):
+    problem = {"content-type": "application/problem+json"}
+    failed = httpx.Response(500, headers=problem, json={"detail": "The server failed."})
+    connection = fake({("GET", "sweeps/5eed"): failed}).client.connection
+    with pytest.raises(ServerError, match="The server failed"):
+        next(polling.follow_sweep(connection, "5eed"))

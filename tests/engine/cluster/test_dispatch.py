@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from microcosmos.cluster.block import Answer, Work
-from microcosmos.cluster.dispatch import Disagreement, Dispatcher
+from microcosmos.cluster.dispatch import Answer, Disagreement, Dispatcher, Work
 from microcosmos.search import Stopped, never
 
 
@@ -119,41 +118,6 @@ def test_a_device_has_no_more_blocks_in_flight_than_its_capacity(computing):
     assert sorted(one.given + two.given) == list(range(1, 7))
 
 
-def test_everybody_has_a_block_before_anybody_has_a_spare(computing):
-    devices = [ByHand(str(i)) for i in range(3)]
-    end = computing(Dispatcher(lambda: devices), 3)
-    until(lambda: all(len(one.waiting) == 1 for one in devices))
-    for one in devices:
-        one.answer()
-    assert end() == in_order(3)
-
-
-def test_blocks_of_a_device_that_leaves_go_to_another(computing):
-    leaving, staying = ByHand("leaving"), ByHand("staying")
-    there = [leaving, staying]
-    end = computing(Dispatcher(lambda: list(there)), 4)
-    until(lambda: len(leaving.waiting) == 2)
-    lost = [work for work, _ in leaving.waiting]
-    there.remove(leaving)
-    staying.answer_all()
-    until(lambda: len(staying.given) == 4)
-    staying.answer_all()
-    assert end() == in_order(4)
-    assert {int(work.items) for work in lost} <= set(staying.given)
-
-
-def test_a_device_that_joins_gets_blocks(computing):
-    first, second = ByHand("first"), ByHand("second")
-    there = [first]
-    end = computing(Dispatcher(lambda: list(there)), 4)
-    until(lambda: len(first.waiting) == 2)
-    there.append(second)
-    until(lambda: len(second.waiting) == 2)
-    first.answer_all()
-    second.answer_all()
-    assert end() == in_order(4)
-
-
 def test_a_late_block_is_computed_twice_and_the_first_answer_counts(computing):
     hanging, other = ByHand("hanging", capacity=1), ByHand("other", capacity=1)
     dispatcher = Dispatcher(lambda: [hanging, other])
@@ -211,20 +175,6 @@ def test_an_answer_that_differs_is_noticed_in_the_next_generation_too(computing)
         end()
 
 
-def test_the_failure_of_one_device_sends_its_block_elsewhere(computing):
-    failing, other = ByHand("failing", capacity=1), ByHand("other", capacity=1)
-    there = [failing, other]
-    end = computing(Dispatcher(lambda: [one for one in there if not one.errors]), 2)
-    until(lambda: failing.waiting and other.waiting)
-    failing.waiting.pop()[1].set_exception(MemoryError("no room"))
-    until(lambda: failing.errors)
-    other.answer()
-    until(lambda: other.waiting)
-    other.answer()
-    assert end() == in_order(2)
-    assert len(failing.given) == 1
-
-
 def test_a_failure_that_a_device_raises_ends_the_generation(computing):
     class Own(ByHand):
         def fail(self, error):
@@ -236,6 +186,25 @@ def test_a_failure_that_a_device_raises_ends_the_generation(computing):
     own.waiting.pop()[1].set_exception(ZeroDivisionError("by a plug-in"))
     with pytest.raises(ZeroDivisionError, match="by a plug-in"):
         end()
+
+
+def test_a_device_whose_connection_is_lost_takes_no_block(computing):
+    class Lost(ByHand):
+        def submit(self, work):
+            raise OSError("no scheduler")
+
+        def fail(self, error):
+            super().fail(error)
+            devices[:] = [other]
+
+    lost, other = Lost("lost"), ByHand("other", capacity=1)
+    devices = [lost, other]
+    end = computing(Dispatcher(lambda: list(devices)), 3)
+    for count in (1, 2, 3):
+        until(lambda count=count: len(other.given) == count)
+        other.answer()
+    assert end() == in_order(3)
+    assert {str(error) for error in lost.errors} == {"no scheduler"}
 
 
 def test_it_stops_between_answers_and_cancels_what_is_under_way(computing):

@@ -2,12 +2,10 @@
 
 import asyncio
 import stat
-import subprocess
 
 import pytest
 
 from microcosmos.cluster import security, write_certificate
-from microcosmos.cluster.join import sbatch
 from microcosmos.cluster.scheduler import configured
 
 
@@ -35,15 +33,15 @@ def test_an_address_that_may_not_be_used_is_named(url, message):
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "[::1]"])
-def test_this_machine_needs_no_certificate(host):
-    assert security(f"tcp://{host}:8786", None) is None
+def test_this_machine_needs_no_certificate(host, tmp_path):
+    """It uses none either: the environment may name one for the addresses elsewhere."""
+    for given in (None, tmp_path / "absent"):
+        assert security(f"tcp://{host}:8786", given) is None
 
 
-def test_a_certificate_that_is_missing_or_not_needed_is_named(tmp_path, certificate):
+def test_a_certificate_that_is_missing_is_named(tmp_path):
     with pytest.raises(ValueError, match=r"must be a file, got .*absent"):
         security("tls://head:8786", tmp_path / "absent")
-    with pytest.raises(ValueError, match="a certificate needs tls://"):
-        security("tcp://127.0.0.1:8786", certificate)
 
 
 def test_only_its_owner_reads_a_certificate_and_no_file_is_replaced(certificate):
@@ -83,13 +81,3 @@ def test_who_has_the_certificate_may_connect_and_nobody_else(certificate, tmp_pa
             return found
 
     assert asyncio.run(run())["address"].startswith("tls://127.0.0.1:")
-
-
-@pytest.mark.parametrize("gpus", [False, True])
-def test_the_batch_file_is_one_that_bash_can_read(tmp_path, gpus):
-    file = tmp_path / "helpers.sbatch"
-    file.write_text(sbatch("microcosmos cluster join tls://head:8786", gpus))
-    subprocess.run(["bash", "-n", str(file)], check=True)
-    lines = file.read_text().splitlines()
-    assert ("#SBATCH --gpus-per-node=1" in lines) == gpus
-    assert lines[-1] == "srun microcosmos cluster join tls://head:8786"

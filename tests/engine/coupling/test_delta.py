@@ -19,14 +19,6 @@ def samples(float64):
     return jnp.asarray(shift + np.array([-2.0, -1.0, 0.0, 1.0]))
 
 
-@pytest.fixture
-def nodes(float64):
-    """Nodes inside the box, across its border and boxes away from it."""
-    spread_out = np.random.default_rng(0).uniform(-40, 40, (30, 2))
-    corners = [[0, 0], [-0.3, 11.9], [15.99, 0.01], [5, 5], [5.5, 5.5]]
-    return jnp.asarray(np.concatenate([spread_out, corners]))
-
-
 def interpolate(plane, at):
     return coupling.interpolate(plane[None], at)[:, 0]
 
@@ -35,43 +27,6 @@ def test_peskins_delta_has_half_on_even_and_odd_cells_and_squares_of_three_eight
     delta = np.asarray(peskin(samples))
     np.testing.assert_allclose(delta[:, 0] + delta[:, 2], 0.5, rtol=1e-14)
     np.testing.assert_allclose(np.sum(delta**2, 1), 3 / 8, rtol=1e-14)
-
-
-def test_interpolation_is_the_transpose_of_spreading_which_keeps_the_sum(nodes):
-    random = np.random.default_rng(1)
-    at = coupling.windows(nodes, SIZE)
-    field = jnp.asarray(random.normal(size=(2, *SIZE)))
-    values = jnp.asarray(random.normal(size=nodes.shape))
-    interpolated = jnp.stack([interpolate(plane, at) for plane in field], 1)
-    spread = coupling.spread(values, at, SIZE)
-    there, back = jnp.sum(spread * field), jnp.sum(values * interpolated)
-    np.testing.assert_allclose(there, back, rtol=1e-12)
-    np.testing.assert_allclose(jnp.sum(spread, (1, 2)), jnp.sum(values, 0), atol=1e-12)
-
-
-def test_interpolation_is_exact_for_linear_fields(float64):
-    positions = jnp.asarray(np.random.default_rng(0).uniform(3, 8, (20, 2)))
-    x, y = jnp.meshgrid(jnp.arange(16.0), jnp.arange(12.0), indexing="ij")
-    at = coupling.windows(positions, SIZE)
-    expected = 1 + 2 * positions[:, 0] - 3 * positions[:, 1]
-    np.testing.assert_allclose(interpolate(1 + 2 * x - 3 * y, at), expected, rtol=1e-12)
-
-
-def test_a_node_acts_on_the_same_cells_from_every_image_of_the_box(nodes):
-    values = jnp.asarray(np.random.default_rng(1).normal(size=nodes.shape))
-    images = nodes + jnp.asarray([[-3.0 * SIZE[0], 2.0 * SIZE[1]]])
-    here, there = (
-        coupling.spread(values, coupling.windows(x, SIZE), SIZE) for x in (nodes, images)
-    )
-    np.testing.assert_allclose(there, here, atol=1e-12)
-
-
-def test_a_node_on_the_border_reaches_across_it(float64):
-    at = coupling.windows(jnp.asarray([[0.0, 11.5]]), SIZE)
-    spread = coupling.spread(jnp.ones((1, 2)), at, SIZE)[0]
-    x, y = np.nonzero(np.asarray(spread))
-    assert set(x) == {15, 0, 1}
-    assert set(y) == {10, 11, 0, 1}
 
 
 def test_interpolation_can_be_differentiated_by_position(require_slope, float64):

@@ -8,8 +8,7 @@ import pytest
 from microcosmos import bodies, coupling, filaments, groups
 from microcosmos.build import build_rods
 from microcosmos.coupling import forcing
-from microcosmos.coupling.forcing import step_lengths
-from microcosmos.coupling.layers import OFFSET
+from microcosmos.coupling.forcing import OFFSET, step_lengths
 
 SIZE = (48, 48)
 
@@ -116,18 +115,6 @@ def test_ten_iterations_leave_half_of_the_slip_that_equal_steps_leave(scene, mon
     assert found <= 0.6 * slip(scene, force(scene, 10))
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("spacing", [0.1, 0.5, 1.0, 2.0])
-def test_iterations_converge_for_any_packing_of_nodes(spacing, scene):
-    count = 40
-    line = np.stack([4 + spacing * np.arange(count), np.full(count, 16.3)], 1)
-    requested = 0.05 * np.random.default_rng(0).normal(size=line.shape)
-    scene |= {"positions": jnp.asarray(line), "velocity": jnp.zeros(line.shape)}
-    scene |= {"target": jnp.asarray(requested)}
-    slips = [slip(scene, force(scene, n)) for n in (1, 2, 4, 8, 16)]
-    assert np.all(np.diff(slips) < 0), slips
-
-
 def test_a_limit_scales_all_forcing_by_one_factor(scene):
     free, limited = force(scene, 3), force(scene, 3, limit=0.01)
     largest = np.sqrt(np.max(np.sum(np.asarray(limited.forcing) ** 2, 1)))
@@ -171,14 +158,6 @@ def test_layers_stand_half_a_cell_to_either_side(curved):
     np.testing.assert_allclose(np.sum(apart[1:11] * along, 1), 0, atol=1e-9)
 
 
-@pytest.mark.parametrize("layers", [1, 2])
-def test_values_at_points_average_to_the_values_at_nodes(layers, curved):
-    _, positions, normals = curved
-    np.testing.assert_array_equal(coupling.points(positions, normals, 1), positions)
-    back = coupling.at_nodes(coupling.at_points(positions, layers), layers)
-    np.testing.assert_allclose(back, positions, rtol=1e-15)
-
-
 def test_edges_that_cancel_have_no_normal_and_no_nan(float64):
     body = bodies.star(4, 3, 1.0)
     rods, positions = build_rods(body, float64), jnp.asarray(body.positions)
@@ -216,16 +195,3 @@ def test_each_of_two_bodies_exerts_neither_force_nor_torque(layers, limit, curve
         assert np.hypot(*q.T).max() >= 0.01 * (1 - 1e-9)
         np.testing.assert_allclose(q.sum(0), 0, atol=1e-14)
         np.testing.assert_allclose(np.sum(x[:, 0] * q[:, 1] - x[:, 1] * q[:, 0]), 0, atol=1e-12)
-
-
-def test_layers_keep_the_requested_shape(curved):
-    body, positions, normals = curved
-    points = coupling.points(positions, normals, 2)
-    asked = jnp.asarray(0.05 * np.random.default_rng(0).normal(size=positions.shape))
-    target = coupling.at_points(asked, 2)
-    found = forced(body, points, target, jnp.zeros_like(points), jnp.ones(SIZE), 2, None)
-    change = np.asarray(coupling.at_nodes(found.target, 2) - asked)
-    for which in range(2):
-        moved, x = (a[body.member == which] for a in (change, body.positions))
-        between, apart = moved[:, None] - moved[None], x[:, None] - x[None]
-        np.testing.assert_allclose(np.sum(between * apart, -1), 0, atol=1e-14)

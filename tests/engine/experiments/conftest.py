@@ -12,7 +12,6 @@ from small_spec import SMALL_SCENE
 
 from microcosmos.archive import creature
 from microcosmos.build import build
-from microcosmos.build.experiments import with_initial
 from microcosmos.spec import parse
 
 SMALL = SMALL_SCENE | {"seed": 3, "search": {"generations": 4, "batch": 16, "block": 8}}
@@ -22,7 +21,6 @@ NEUROEVOLUTION = SMALL | {
     "genome": {"max_nodes": 10, "max_connections": 16},
     "search": {"generations": 5, "batch": 16, "block": 8, "reevaluation": {"every": 3}},
 }
-DECIDES = {"every": 3, "samples": 2, "max_samples": 3, "decides": True}
 TINY = SMALL | {
     "seed": 2,
     "body": {"nodes": 8},
@@ -41,8 +39,6 @@ def learner(control, **emitter):
 SPECS = {
     "quality-diversity": SMALL,
     "neuroevolution": NEUROEVOLUTION,
-    "deciding": SMALL
-    | {"search": {"generations": 5, "batch": 8, "block": 4, "reevaluation": DECIDES}},
     "folding": {
         "experiment": "folding",
         "targets": [{"digit": 1}, {"digit": 3}],
@@ -57,20 +53,14 @@ SPECS = {
     | {"width": 32, "height": 32, "steps": 10, "part_steps": 2},
     "cma-mae": learner(NUMBERS, operator="cma-mae"),
     "cma-mega": learner(NUMBERS, operator="cma-mega"),
-    "lamarckian": learner({"period": 20}, operator="lamarckian", lessons=1),
     "cma-me": learner(NUMBERS, operator="cma-me", emitters=2),
-    "tensorneat": TINY
-    | {"experiment": "neuroevolution", "control": {"period": 20}, "search": LEARNING}
-    | {"neat": {"backend": "tensorneat", "preset": "tensorneat"}},
 }
 SEVERAL = [
     {"operator": "neat", "select": "uniform", "crossover": 0.3, "share": 2},
     {"operator": "random"},
     {"operator": "neat", "select": "curiosity"},
 ]
-SPECS["bandit"] = SMALL | {
-    "search": SMALL["search"] | {"generations": 6, "emitters": SEVERAL, "bandit": {"window": 3}}
-}
+SPECS["several"] = SMALL | {"search": SMALL["search"] | {"emitters": SEVERAL}}
 AGAIN = {"reevaluation": {"every": 3, "samples": 2}}
 SPECS["dominated-novelty"] = SMALL | {
     "archive": {"container": {"kind": "dominated-novelty", "size": 24}}
@@ -86,8 +76,6 @@ SPECS["learned"] = SMALL | {
     "archive": {"container": {"kind": "learned", "bins": 5, "first": 2, "measures": []}},
     "search": SMALL["search"] | AGAIN,
 }
-SCREENED = {"batch": 64, "screening": {"rounds": 2, "candidates": 4}}
-SPECS["screened-bandit"] = SPECS["bandit"] | {"search": SPECS["bandit"]["search"] | SCREENED}
 SPECS["zoo"] = SMALL | {
     "body": {"builder": "grown", "nodes": 26, "length": 20.0, "segments": 4, "rings": 1}
     | {"segment_nodes": 15, "limbs": 6},
@@ -115,7 +103,7 @@ SPECS["screened"] = TINY | {
         ]
     },
 }
-PACKAGES = {"cma-me": "qdax", "tensorneat": "tensorneat"}
+PACKAGES = {"cma-me": "qdax"}
 """Optional packages that some runs need."""
 
 
@@ -144,7 +132,7 @@ def course_of(carry_out):
             states, _, search, _ = course("quality-diversity")
             document = document | {"creature": search.best(states[-1])}
         if importlib.util.find_spec(PACKAGES.get(name, "jax")) is None:
-            pytest.skip(f"{PACKAGES[name]} is not installed: make peers, make tensorneat")
+            pytest.skip(f"{PACKAGES[name]} is not installed: make peers")
         spec = parse(document)
         experiment = build(spec)
         return Course(*carry_out(experiment), experiment, spec)
@@ -186,11 +174,11 @@ def lasting():
     """A function that changes the number of generations of a run."""
 
     def change(experiment, generations):
-        spec = json.loads(experiment.plan.spec)
+        spec = json.loads(experiment.facts.spec)
         spec["search"]["generations"] = generations
-        text = json.dumps(spec, sort_keys=True)
-        plan = replace(experiment.plan, generations=generations, spec=text)
-        return replace(experiment, plan=plan)
+        facts = replace(experiment.facts, spec=json.dumps(spec, sort_keys=True))
+        plan = replace(experiment.plan, generations=generations)
+        return replace(experiment, plan=plan, facts=facts)
 
     return change
 
@@ -215,8 +203,8 @@ def forked_from():
     """A function that gives a run from creatures with the programs of another."""
 
     def fork(experiment, chosen, files):
-        text = json.dumps(chosen.model_dump(mode="json"), sort_keys=True)
-        plan = replace(experiment.plan, spec=text, generations=chosen.search.generations)
-        return replace(experiment, plan=with_initial(plan, chosen, files))
+        built = build(chosen, files)
+        compiled = {"steps": experiment.plan.steps, "evaluate": experiment.plan.evaluate}
+        return replace(built, plan=replace(built.plan, **compiled))
 
     return fork

@@ -32,10 +32,7 @@ def files(specs, cache):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "name",
-    ["bandit", "dominated-novelty", "fronts", "learned", "screened", "screened-bandit"],
-)
+@pytest.mark.parametrize("name", ["several", "screened"])
 def test_the_number_of_devices_changes_no_byte(name, files):
     one, two = (files(name, devices) for devices in (1, 2))
     assert one == two

@@ -13,7 +13,7 @@ import pytest
 from microcosmos import search, units
 from microcosmos.archive import creature
 from microcosmos.audit.reproducibility import check
-from microcosmos.build.tables import build_strokes
+from microcosmos.build.experiments import build_strokes
 from microcosmos.experiments import gaits
 from microcosmos.experiments.table_file import TableRun
 from microcosmos.spec import EXPERIMENTS, parse

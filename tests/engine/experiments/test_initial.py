@@ -5,7 +5,9 @@ import json
 import pytest
 
 from microcosmos.archive import creature, creature_h5, file
-from microcosmos.cli.initial import creatures, with_initial
+from microcosmos.build import build
+from microcosmos.cli.run import creatures, with_initial
+from microcosmos.invalid import InvalidField
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +73,14 @@ def test_a_spec_that_names_creatures_takes_only_those_of_the_files(
     assert "--from needs the creatures that `search.initial` names; got none of 0000" in text
 
 
+def test_a_creature_whose_file_is_not_what_its_name_says_is_refused(small, best):
+    named = small(search={"initial": [best["sha256"]]})
+    changed = {**best, "identity": {**best["identity"], "scene": named.scene.model_dump()}}
+    for given in (changed, {"sha256": best["sha256"]}):
+        with pytest.raises(InvalidField, match=r"sha256|identity"):
+            build(named, [given]).init()
+
+
 def test_a_file_without_fitting_creatures_is_refused(small, archive, evolve, tmp_path):
     (tmp_path / "note.txt").write_text("a note")
     (tmp_path / "broken.h5").write_bytes(archive.read_bytes()[:2000])
@@ -79,4 +89,4 @@ def test_a_file_without_fitting_creatures_is_refused(small, archive, evolve, tmp
         assert "--from needs a creature file or an archive" in text
         assert name in text.replace(" ", "")
     text = evolve(small(control={"timer": "linear"}), "--from", archive, code=2)
-    assert "--from: `control: inputs` needs" in text
+    assert "--from: `control.inputs` needs" in text

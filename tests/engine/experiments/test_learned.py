@@ -28,7 +28,7 @@ def test_its_file_and_its_summaries_record_every_epoch(course, experiment):
         assert held["displaced"][i] == len(before - after)
         summary = reports[number - 1].summary
         assert (summary["epoch"], summary["displaced"]) == (i + 1, len(before - after))
-        assert summary["explained variance"] == pytest.approx(held["explained"][i].sum())
+        assert summary["explained_variance"] == pytest.approx(held["explained"][i].sum())
     assert "epoch" not in reports[2].summary
     assert held["explained"].shape == (3, 2)
     assert tree["loop"]["container"]["epoch"] == 3

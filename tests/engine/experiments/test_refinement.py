@@ -61,6 +61,17 @@ def test_infeasible_trials_are_refused(course):
     assert experiment.advance(first)[0].fitness > first.fitness
 
 
+def test_the_refined_creature_keeps_the_licence_and_credit_of_the_given_one(spec, course):
+    terms = {"licence": "CC0-1.0", "credit": ["Ada"]}
+    chosen = spec.model_dump(mode="json") | {"creature": {**spec.creature, **terms}}
+    experiment = replace(course.experiment, spec=json.dumps(chosen))
+    first, last = course[0][1], course[0][-1]
+    for state in (first, last):
+        assert experiment.best(state) == course.experiment.best(state) | terms
+    assert experiment.best(first)["sha256"] == spec.creature["sha256"]
+    assert experiment.best(last)["sha256"] != spec.creature["sha256"]
+
+
 def test_refinement_stays_in_the_cell(spec, rows):
     cells = build_cells(spec.archive)
     measures = [row.measured["measures"] for row in rows]

@@ -5,20 +5,15 @@ import numpy as np
 import pytest
 
 from microcosmos import device
-from microcosmos.archive.report import Row
-from microcosmos.build.tables import build_crowd
+from microcosmos.build.experiments import build_crowd
 from microcosmos.experiments.scaling import (
     LINEAR_FROM,
     Timing,
     _all_pairs,
-    report,
     step_row,
     summary,
 )
-from microcosmos.experiments.table_file import TableRun
-from microcosmos.search import Stopped
 from microcosmos.spec import parse
-from microcosmos.spec.scaling import SPACING
 
 PARTS = ("fluid", "coupling", "constraints", "steric")
 
@@ -64,17 +59,6 @@ def test_the_chosen_kernel_is_measured(specs, monkeypatch, kernel):
     assert found["steps"] == {"native": 200, "jax": 250}[kernel]
 
 
-@pytest.mark.parametrize("kernel", ["native", "jax"])
-def test_a_measurement_stops_between_calls(specs, monkeypatch, kernel):
-    if kernel == "native" and device.kernel_version() is None:
-        pytest.skip("the native kernel is not installed")
-    monkeypatch.setenv(device.KERNEL_VARIABLE, kernel)
-    answers = iter([False, True])
-    plan = Timing(200, 2, {}, lambda: next(answers))
-    with pytest.raises(Stopped):
-        step_row(*build_crowd(parse(specs["scaling"]), 40), plan)
-
-
 @pytest.mark.fast
 @pytest.mark.parametrize("slope", [1.0, 1.3])
 def test_the_exponent_is_the_slope_of_what_depends_on_nodes(slope):
@@ -87,41 +71,6 @@ def test_the_exponent_is_the_slope_of_what_depends_on_nodes(slope):
     assert found["exponent_all_pairs"] == pytest.approx(2.0, rel=1e-9)
     assert found["exponent_from"] == LINEAR_FROM == 16_000
     assert found["peak_memory_bytes"] == 640_000
-
-
-@pytest.mark.fast
-def test_the_exponent_needs_three_numbers_and_is_fitted_to_the_largest():
-    found = summary([row(1_000, 3.0), row(16_000, 4.0)])
-    assert found["exponent"] is None
-    assert found["exponent_all_pairs"] is None
-    rows = [row(n, 2.0 + 1e-4 * n) for n in (1_000, 2_000, 4_000, 8_000)]
-    rows[0]["seconds"] = 50.0
-    found = summary(rows)
-    assert found["exponent"] == pytest.approx(1.0)
-    assert found["exponent_from"] == 2_000
-
-
-@pytest.mark.fast
-def test_rows_that_did_not_stay_finite_are_ignored():
-    rows = [row(16_000, 4.0), row(32_000, 6.0), row(64_000, 99.0, status="non-finite")]
-    assert summary(rows)["exponent"] == pytest.approx(1.0)
-    assert summary([row(16_000, 4.0, memory_bytes=None)])["peak_memory_bytes"] is None
-    experiment = TableRun("{}", "cpu", 1, lambda number, stop: (Row(rows[2]),), report)
-    assert experiment.advance(experiment.init())[1].infeasible == 1
-
-
-def test_filaments_of_the_crowd_are_apart(specs):
-    spec = parse(specs["scaling"])
-    columns, rows = spec.places
-    count = columns * rows * spec.filament
-    full = parse({**spec.model_dump(), "nodes": [20, count]})
-    _, start = build_crowd(full, count)
-    x = np.asarray(start.positions)
-    away = np.abs(x[:200, None] - x[None])
-    away = np.minimum(away, 32 - away)
-    distance = np.hypot(away[..., 0], away[..., 1])
-    distance[np.arange(200), np.arange(200)] = 1
-    assert distance.min() == pytest.approx(SPACING, rel=1e-4)
 
 
 def test_all_pairs_repel_by_the_gradient_of_a_gaussian(float64):

@@ -1,17 +1,15 @@
 """A small search for bodies: creature files, forks, and numbers of segments."""
 
 import copy
-import json
 from functools import reduce
 from operator import getitem
 
 import numpy as np
 import pytest
 
-from microcosmos import genomes
 from microcosmos.archive import creature
 from microcosmos.archive.initial import counters, genes_of
-from microcosmos.build import build, build_task
+from microcosmos.build import build
 from microcosmos.naming import decode, encode
 from microcosmos.spec import parse
 
@@ -30,30 +28,6 @@ def files(course, elite_files):
 def largest(files):
     """The file of the creature with the most segments."""
     return max(files, key=lambda file: len(file["identity"]["genome"]["plan"]["number"]))
-
-
-def test_the_archive_holds_bodies_of_many_forms(course, files):
-    measures = [file["measured"]["measures"] for file in files]
-    assert len({one["free_ends"] for one in measures}) >= 3
-    assert len({round(one["total_length"]) for one in measures}) >= 3
-    assert all(np.isfinite(one["fitness"]) for one in (file["measured"] for file in files))
-
-
-def test_creature_files_come_back_and_keep_their_names(files):
-    assert len({file["sha256"] for file in files}) == len(files)
-    for file in files:
-        assert creature.parse(json.dumps(file)) == file
-        assert creature.name(file["identity"]) == file["sha256"]
-
-
-def test_genes_come_back_from_a_file(course, files):
-    task = build_task(course.spec.scene, room=creature.room(files[0]))
-    for file in files:
-        genes = file["identity"]["genome"]
-        genotype = genomes.read(genes, task.encoding)
-        again = genomes.write(genotype)
-        assert again == {name: genes[name] for name in again}
-        assert genotype.plan.used.sum() == len(genes["plan"]["number"])
 
 
 def floats(*values):

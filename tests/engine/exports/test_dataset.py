@@ -35,12 +35,6 @@ def test_a_grid_has_its_elites_at_the_middles_of_their_bins(made):
     assert json.loads(found.attrs["spec"])["archive"]["descriptors"] == AXES
 
 
-def test_selecting_by_value_finds_the_elite_of_that_bin(made):
-    found = mc.to_xarray(made())
-    one = found.sel(bending_effort=100.0, straightness=0.9, method="nearest")
-    assert float(one.fitness) == np.float32(np.pi)
-
-
 @pytest.mark.parametrize(("kind", "dimension"), [("cvt", "cell"), ("pool", "place")])
 def test_other_archives_have_descriptors_along_one_dimension(made, kind, dimension):
     found = opened(made(kind))
@@ -65,7 +59,3 @@ def test_numbers_keep_their_bits(ran):
         assert flat.tobytes() == np.ascontiguousarray(archive["measures"][:, i]).tobytes()
     ages = found.age.values.reshape(-1)[archive["cell"]]
     np.testing.assert_array_equal(ages, 4 - archive["generation"])
-
-
-def test_the_same_run_gives_the_same_values_again(made):
-    assert opened(made()).identical(opened(made()))

@@ -3,7 +3,6 @@
 import csv
 import io
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -11,8 +10,6 @@ import xarray as xr
 from made_archives import without_elites
 
 import microcosmos as mc
-from microcosmos.archive import export, physical
-from microcosmos.archive.quantities import Real
 
 REAL = {"length": "1mm", "period": "0.5s"}
 TABLES = ("archive", "lineage", "genomes", "poses")
@@ -45,15 +42,6 @@ def test_parquet_and_arrow_have_all_columns_and_no_rows(made, empty, tmp_path, k
         assert pq.read_table(tmp_path / name / "curves.parquet").num_rows == 3
 
 
-def test_an_empty_run_beside_another_adds_no_row(made, empty, tmp_path):
-    full = tmp_path / "full.h5"
-    full.write_bytes(made())
-    mc.export([empty(), full], "parquet", tmp_path / "both")
-    for table in TABLES:
-        found = pq.read_table(tmp_path / "both" / f"{table}.parquet")
-        assert found["run"].to_pylist() == ["full"] * 3
-
-
 def test_a_ro_crate_has_a_table_without_rows(empty, tmp_path, invoke):
     to = tmp_path / "record"
     invoke("export", str(empty()), "--as", "ro-crate", "--to", str(to))
@@ -63,18 +51,3 @@ def test_a_ro_crate_has_a_table_without_rows(empty, tmp_path, invoke):
     archive = xr.open_dataset(to / "archive.nc", engine="h5netcdf")
     assert int(archive.fitness.notnull().sum()) == 0
     assert "0 elites after" in (to / "README.md").read_text()
-
-
-def test_the_table_of_pyribs_has_the_columns_of_other_archives(made, empty):
-    data = empty().read_bytes()
-    assert list(export.columns(data)) == list(export.columns(made()))
-    assert not any(len(one) for one in export.columns(data).values())
-
-
-def test_physical_units_have_the_columns_of_other_archives(made, empty):
-    data = empty().read_bytes()
-    (_, found), (_, expected) = (
-        physical.of_archive(one, Real(1e-3, 0.5)) for one in (data, made())
-    )
-    assert list(found) == list(expected)
-    assert not any(np.size(one) for one in found.values())

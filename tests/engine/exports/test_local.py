@@ -1,11 +1,14 @@
 """The command `export` and the function: files, refusals, names."""
 
+from pathlib import Path
+from unittest.mock import Mock
+
 import numpy as np
 import pytest
 
 import microcosmos as mc
-from microcosmos.archive import file
-from microcosmos.exports.writing import write
+from microcosmos.archive import atomic, export, file
+from microcosmos.exports import formats
 
 
 def test_the_command_prints_each_file_and_its_size(ran, invoke):
@@ -21,6 +24,109 @@ def test_nothing_is_overwritten(ran, invoke, tmp_path):
     assert "--to needs a new or empty folder" in text
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["phylogeny.csv"]
     assert (tmp_path / "out/phylogeny.csv").read_bytes() == before
+
+
+def test_files_go_into_an_empty_folder_a_link_to_one_or_that_of_the_shell(
+    ran, invoke, tmp_path, monkeypatch
+):
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    (tmp_path / "link").symlink_to(folder)
+    assert "link/phylogeny.nwk" in invoke(
+        "export", str(ran), "--as", "newick", "--to", str(tmp_path / "link")
+    )
+    assert [path.name for path in folder.iterdir()] == ["phylogeny.nwk"]
+    (folder / "phylogeny.nwk").unlink()
+    monkeypatch.chdir(folder)
+    mc.export([ran], "newick", ".")
+    assert [path.name for path in folder.iterdir()] == ["phylogeny.nwk"]
+    assert [path.name for path in Path.cwd().iterdir()] == ["phylogeny.nwk"]
+    for to in (".", ".."):
+        with pytest.raises(ValueError, match="`to` must name the ZIP file"):
+            mc.export([ran], "newick", to, zip=True)
+
+
+@pytest.mark.parametrize("failure", [OSError("full"), KeyboardInterrupt()])
+@pytest.mark.parametrize("exists", [True, False])
+def test_a_failure_leaves_nothing_behind(tmp_path, monkeypatch, failure, exists):
+    folder, synced = tmp_path / "out", []
+
+    def sync(number):
+        synced.append(number)
+        if len(synced) == 3:  # Each file syncs itself, and then its folder.
+            raise failure
+
+    if exists:
+        folder.mkdir()
+    before = [*tmp_path.rglob("*")]
+    with monkeypatch.context() as patch:
+        patch.setattr(atomic.os, "fsync", sync)
+        with pytest.raises(type(failure)):
+            formats.write({"a.csv": b"a", "b.csv": b"b"}, folder)
+        assert len(synced) == 3
+    assert [*tmp_path.rglob("*")] == before
+    formats.write({"a.csv": b"a"}, folder)
+    assert (folder / "a.csv").read_bytes() == b"a"
+
+
+@pytest.mark.parametrize("exists", [True, False])
+def test_an_export_removes_what_a_killed_one_left(tmp_path, monkeypatch, exists):
+    folder = tmp_path / "out"
+    if exists:
+        folder.mkdir()
+    with monkeypatch.context() as patch:
+        patch.setattr(atomic.os, "fsync", Mock(side_effect=[None, None, KeyboardInterrupt]))
+        patch.setattr(atomic.shutil, "rmtree", Mock())  # A killed process removes nothing.
+        with pytest.raises(KeyboardInterrupt):
+            formats.write({"old.csv": b"old", "b.csv": b"b"}, folder)
+    assert [path.name for path in tmp_path.rglob("*.csv")] == ["old.csv"]
+    formats.write({"a.csv": b"a"}, folder)
+    assert set(tmp_path.rglob("*")) == {folder, folder / "a.csv"}
+
+
+def test_an_export_removes_no_part_of_a_living_one(tmp_path):
+    folder = tmp_path / "out"
+    with atomic.folder_part(folder) as part:
+        (part / "b.csv").write_bytes(b"b")
+        formats.write({"a.csv": b"a"}, folder)
+        assert (part / "b.csv").exists()
+
+
+def test_the_second_of_two_exports_into_one_folder_is_refused(tmp_path):
+    class Slow(dict):
+        def items(self):
+            formats.write({"a.csv": b"first"}, folder)
+            return super().items()
+
+    folder = tmp_path / "out"
+    with pytest.raises(FileExistsError, match="--to needs a new or empty folder"):
+        formats.write(Slow({"a.csv": b"second"}), folder)
+    assert list(tmp_path.iterdir()) == [folder]
+    assert (folder / "a.csv").read_bytes() == b"first"
+
+
+def test_a_name_of_a_run_leads_to_no_other_folder(ran, tmp_path):
+    other = tmp_path / "...h5"
+    other.write_bytes(ran.read_bytes())
+    with pytest.raises(ValueError, match=r"`name` of a run must name a folder; got '\.\.'"):
+        mc.export([ran, other], "newick", tmp_path / "trees")
+    assert list(tmp_path.iterdir()) == [other]
+
+
+def test_the_command_takes_the_licence_of_a_shared_file_and_names_a_wrong_author(
+    made, invoke, tmp_path
+):
+    (tmp_path / "eels.h5").write_bytes(export.licensed(made(), "CC-BY-NC-4.0", ["Ada"]))
+    given = ("export", "eels.h5", "--as", "ro-crate")
+    assert "`authors` must be" in invoke(*given, "--author", "Doe,", code=2)
+    invoke(*given)
+    citation = tmp_path / "eels-ro-crate" / "CITATION.cff"
+    assert 'license: "CC-BY-NC-4.0"' in citation.read_text()
+
+
+def test_an_export_needs_a_run(tmp_path):
+    with pytest.raises(ValueError, match="`runs` must have at least one run; got none"):
+        mc.export([], "parquet", tmp_path / "none")
 
 
 def test_several_runs_have_a_folder_each_unless_they_share_a_table(ran, tmp_path):
@@ -52,16 +158,6 @@ def test_a_run_without_an_archive_has_a_table(tmp_path):
         with pytest.raises(ValueError, match="times needs an archive for this format"):
             mc.export([path], form, tmp_path / form)
         assert not (tmp_path / form).exists()
-
-
-def test_a_failure_leaves_nothing_behind(tmp_path, monkeypatch):
-    def full(path, data):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("microcosmos.exports.writing.write_whole", full)
-    with pytest.raises(OSError, match="No space left"):
-        write({"a/b": b"1"}, tmp_path / "out")
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(

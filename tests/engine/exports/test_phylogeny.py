@@ -1,16 +1,11 @@
 """Phylogenies of archive files are read by DendroPy and follow the ALife standard."""
 
-import csv
-import io
-
 import dendropy
 import numpy as np
 import pytest
 
-from microcosmos.archive.phylogeny import alife_csv
-from microcosmos.exports import births
-from microcosmos.exports.births import of_file
-from microcosmos.exports.run_file import RunFile
+from microcosmos.exports import run_file
+from microcosmos.exports.run_file import RunFile, of_file
 
 
 @pytest.fixture
@@ -24,7 +19,7 @@ def family(made):
 
 def test_newick_is_read_by_dendropy_with_every_creature(ran):
     run = RunFile("small", ran.read_bytes())
-    text = births.written(run, "nwk").decode()
+    text = run_file.written(run, "nwk").decode()
     trees = dendropy.TreeList.get(data=text, schema="newick", suppress_internal_node_taxa=True)
     labels = {
         node.label or node.taxon.label for tree in trees for node in tree.preorder_node_iter()
@@ -38,13 +33,6 @@ def test_newick_is_read_by_dendropy_with_every_creature(ran):
     found = of_file(run)
     named = {node.label or node.taxon.label: time for node, time in times.items()}
     assert named == dict(zip(found.creature, found.time.tolist(), strict=True))
-
-
-def test_the_standard_table_names_rows_of_parents(family):
-    rows = list(csv.DictReader(io.StringIO(births.written(family, "csv").decode())))
-    assert [row["ancestor_list"] for row in rows] == ["[none]", "[0]", "[0,1]"]
-    assert [row["origin_time"] for row in rows] == ["1", "2", "3"]
-    assert {row["run"] for row in rows} == {"family"}
 
 
 def test_a_creature_is_lost_when_another_takes_its_cell(made):
@@ -64,18 +52,6 @@ def test_a_creature_is_lost_when_another_takes_its_cell(made):
     assert found.lost.tolist() == [2, -1, -1]
 
 
-def test_initial_creatures_are_roots(made):
-    parents = np.zeros((3, 2, 32), np.uint8)
-    origin = np.full(32, 7, np.uint8)
-    parents[0, 0] = origin
-    initial = {"creature": origin[None], "genomes": {"weight": np.zeros((1, 4), np.float32)}}
-    found = of_file(RunFile("one", made(parents=parents, initial=initial)))
-    child, parent = found.links[0]
-    assert found.creature[parent] == bytes(origin).hex()
-    assert found.creature[child] == bytes(range(32)).hex()
-    assert len(alife_csv(found).splitlines()) == 5
-
-
 def test_the_phylogeny_of_a_server_takes_precedence(made):
     run = RunFile("one", made(), {"nwk": b"(a:1)b:1;\n"})
-    assert births.written(run, "nwk") == b"(a:1)b:1;\n"
+    assert run_file.written(run, "nwk") == b"(a:1)b:1;\n"

@@ -3,20 +3,19 @@
 import io
 import json
 
-import h5py
 import numpy as np
-import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-import xarray as xr
 from typer.testing import CliRunner
 
 import microcosmos as mc
-from microcosmos.archive import file
+from microcosmos.archive import export, file
 from microcosmos.archive.poses import streams
 from microcosmos.cli import app
 from microcosmos.exports import arrow
-from microcosmos.exports.dataset import netcdf
+from microcosmos.exports.si import of_scene
+from microcosmos.quantities.real import Real
+from microcosmos.spec import Direct, Scene
 
 REAL = {"length": "1mm", "period": "0.5s"}
 LENGTH, PERIOD = 1e-3, 0.5
@@ -62,10 +61,29 @@ def parquet(table):
 
 @pytest.fixture(scope="module")
 def scales(ran):
-    """Metres a cell of each elite, and seconds a step."""
+    """Metres a cell of each elite, and seconds a step: its own stroke takes 0.5 s."""
     tree, attributes = file.load(ran.read_bytes())
     cells = np.array([one.length for one in streams(tree, attributes)])
-    return LENGTH / cells, PERIOD / json.loads(attributes["spec"])["control"]["period"]
+    table, period = export.columns(ran.read_bytes()), nominal(ran)
+    stroked = table["speed"] > 0
+    speed = np.where(stroked, table["speed"], np.nan).astype(float)
+    steps = 1000 * table["stride"].astype(float) / speed
+    assert np.nanmax(steps) > 1.001 * period, "a limit of speed slows some clocks"
+    return LENGTH / cells, PERIOD / np.where(
+        np.isclose(steps, period, rtol=1e-4), period, steps
+    )
+
+
+def nominal(ran):
+    """Steps of a stroke of the clock that nothing slows."""
+    return json.loads(file.load(ran.read_bytes())[1]["spec"])["control"]["period"]
+
+
+def test_a_speed_is_the_stride_of_a_body_in_the_period_of_its_stroke(ran):
+    found = mc.to_arrow(ran, **REAL).to_pandas()
+    moved = found[found.speed > 0]
+    assert len(moved)
+    np.testing.assert_allclose(moved.speed_si, moved.stride * LENGTH / PERIOD, rtol=2e-4)
 
 
 def test_every_measure_with_a_dimension_is_read_back_in_si(ran, scales):
@@ -86,9 +104,8 @@ def test_the_fluid_gives_back_the_reynolds_number_in_metres_and_seconds(ran, sca
     lattice = json.loads(found.schema.metadata[b"runs"])["run"]["spec"]["world"]["viscosity"]
     fluid = found["viscosity_si"].to_numpy()
     np.testing.assert_allclose(fluid, lattice * cell**2 / step, rtol=1e-12)
-    np.testing.assert_allclose(
-        found["node_speed_si"].to_numpy() * LENGTH / fluid, found["reynolds"].to_numpy()
-    )
+    number = np.where(np.isfinite(step), found["reynolds"].to_numpy(), np.nan)
+    np.testing.assert_allclose(found["node_speed_si"].to_numpy() * LENGTH / fluid, number)
     np.testing.assert_allclose(found["cell_size_si"].to_numpy(), cell, rtol=1e-12)
 
 
@@ -105,14 +122,22 @@ def test_poses_curves_and_lineage_have_their_columns(ran, scales):
     for row in (0, len(poses) - 1):
         x, in_metres = (np.array(poses[name][row].as_py()) for name in ("x", "x_si"))
         np.testing.assert_allclose(in_metres, x * cell[row], rtol=1e-12)
-        times = np.array(poses["step"][row].as_py()) * step
+        times = np.array(poses["step"][row].as_py()) * step[row]
         np.testing.assert_allclose(poses["step_si"][row].as_py(), times, rtol=1e-12)
     np.testing.assert_allclose(poses["length_si"].to_numpy(), LENGTH, rtol=1e-6)
+    # Of creatures that are gone nobody knows how long a stroke took.
     curves, lineage = (mc.to_arrow(ran, name, **REAL) for name in ("curves", "lineage"))
+    step = PERIOD / nominal(ran)
     for table, name in ((curves, "best"), (lineage, "fitness")):
         expected = table[name].to_numpy().astype(float) * LENGTH / (1000 * step)
         np.testing.assert_allclose(table[f"{name}_si"].to_numpy(), expected, rtol=1e-12)
     assert "coverage_si" not in curves.column_names
+
+
+@pytest.mark.parametrize(("trait", "known"), [("rest_angle", True), ("rest_length", False)])
+def test_bodies_of_inherited_lengths_share_no_cell(trait, known):
+    control = Direct(**{trait: {"low": 0.5, "high": 1.5}})
+    assert (of_scene(Scene(control=control), Real.of(**REAL)).cell is not None) == known
 
 
 def test_each_body_of_a_file_has_its_own_cell(made):
@@ -122,33 +147,12 @@ def test_each_body_of_a_file_has_its_own_cell(made):
     np.testing.assert_allclose(ratio, [2e-4, 1e-4, 5e-5])
 
 
-def test_xarray_reads_them_from_netcdf(ran, scales):
-    found = xr.load_dataset(io.BytesIO(netcdf(mc.to_xarray(ran, **REAL))), engine="h5netcdf")
-    table = mc.to_arrow(ran, **REAL)
-    flat = found["speed_si"].values.reshape(-1)[table["cell"].to_numpy()]
-    np.testing.assert_array_equal(flat, table["speed_si"].to_numpy())
-    assert found["speed_si"].attrs == {"long_name": "Speed", "units": "m/s"}
-    assert found["power_si"].attrs["long_name"] == "Power, over density and depth of the fluid"
-    assert (found.attrs["real_length_m"], found.attrs["real_period_s"]) == (1e-3, 0.5)
-    with h5py.File(io.BytesIO(netcdf(mc.to_xarray(ran)))) as plain:
-        assert not [name for name in plain if name.endswith("_si")]
-
-
-def test_the_command_writes_them(ran, tmp_path):
-    out = tmp_path / "study"
-    command = ["export", str(ran), "--as", "arrow", "--to", str(out)]
-    done = CliRunner().invoke(app, [*command, "--length", "1mm", "--period", "500 ms"])
-    assert done.exit_code == 0, done.output
-    with pa.ipc.open_file(out / "archive.arrow") as found:
-        assert found.read_all().equals(mc.to_arrow(ran, run=ran.stem, **REAL))
-
-
 @pytest.mark.parametrize(
     ("given", "reason"),
     [
         ({"length": "1mm", "period": "0.5m"}, "`period` must be a number above 0 with a unit"),
         ({"length": "1s", "period": "1s"}, "`length` must be a number above 0 with a unit"),
-        ({"length": "1mm"}, "`length` and `period` must be given together, got `length` '1mm'"),
+        ({"length": "1mm"}, "`period` must be given too, got `length` '1mm'"),
     ],
 )
 def test_wrong_units_are_refused_by_library_and_command(ran, tmp_path, given, reason):

@@ -4,13 +4,12 @@ import io
 import json
 
 import numpy as np
-import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
 import microcosmos as mc
-from microcosmos.archive import export, file
+from microcosmos.archive import file
 from microcosmos.archive.poses import streams
 from microcosmos.exports import arrow
 from microcosmos.exports.run_file import RunFile
@@ -62,7 +61,7 @@ def test_numbers_have_the_bits_of_the_archive_file(ran, form):
         equal(tables["archive"][name], measures[:, i])
     for name in ("fitness", "cell", "generation", "curiosity"):
         equal(tables["archive"][name], tree["archive"][name])
-    for name in ("qd_score", "coverage", "best", "hit_rate"):
+    for name in ("qd_score", "coverage", "best", "mean"):
         equal(tables["curves"][name], tree["curves"][name])
     for name, genes in tree["archive"]["genomes"].items():
         found = np.stack(tables["genomes"][name].to_numpy())
@@ -97,15 +96,6 @@ def test_the_schema_holds_spec_units_and_axes(made):
     assert axis == {"low": 1e-4, "high": 100.0, "bins": 4, "scale": "log10"}
 
 
-def test_cells_and_ages_count_as_the_archive_does(made):
-    found = mc.to_arrow(made()).to_pandas()
-    assert found["age"].tolist() == [2, 1, 1]
-    assert found["bin_bending_effort"].tolist() == [0, 2, 3]
-    assert found["bin_straightness"].tolist() == [1, 0, 2]
-    for kind in ("cvt", "pool"):
-        assert "bin_straightness" not in mc.to_arrow(made(kind)).column_names
-
-
 def test_several_runs_make_one_table_with_their_names(made, ran):
     runs = [RunFile("a", made()), RunFile("b", ran.read_bytes())]
     for name in TABLES:
@@ -115,16 +105,36 @@ def test_several_runs_make_one_table_with_their_names(made, ran):
         assert {one["values"]: one["counts"] for one in counts} == dict(
             zip("ab", alone, strict=True)
         )
-    lineage = arrow.of_runs(runs, "lineage").to_pandas()
-    assert lineage[lineage["run"] == "b"]["straightness"].isna().all()
+    lineage = arrow.of_runs(runs, "lineage")
+    rows = lineage.to_pandas()
+    assert rows[rows["run"] == "b"]["straightness"].isna().all()
+    assert b"axis" in lineage.schema.field("straightness").metadata
+    # The fitness of one is a speed, that of the other a displacement.
+    runs[0] = RunFile("a", made(spec={"task": {"fitness": "displacement", "steps": 400}}))
+    for order in (runs, runs[::-1]):
+        schema = arrow.of_runs(order, "archive").schema
+        assert schema.field("fitness").metadata == {b"title": b"Fitness"}
+        assert schema.field("straightness").metadata.keys() == {b"title", b"unit"}
 
 
-def test_pandas_reads_what_the_csv_has(ran):
-    found = pd.read_parquet(io.BytesIO(arrow.parquet(mc.to_arrow(ran))))
-    columns = export.columns(ran.read_bytes())
-    assert found["creature"].tolist() == columns["creature"]
-    np.testing.assert_array_equal(found["speed"], columns["speed"])
-    assert found["operator"].dtype == "category"
+def of_rows(name, *rows):
+    loop = {"generation": np.int64(1), "rows": np.frombuffer(json.dumps(rows).encode(), "u1")}
+    facts = {"format": file.FORMAT, "version": "0.1.0", "device": "[]", "spec": "{}"}
+    return RunFile(name, file.dump({"loop": loop}, facts))
+
+
+def test_a_column_without_values_takes_the_type_of_other_runs():
+    words, none, numbers = (
+        of_rows(name, {"x": value}, {"x": None})
+        for name, value in (("a", "fast"), ("b", None), ("c", 0.5))
+    )
+    for order in ((words, none), (none, words)):
+        assert sorted(map(str, arrow.of_runs(order, "result")["x"].to_pylist())) == [
+            *("None", "None", "None", "fast")
+        ]
+    assert arrow.of_runs([none, numbers], "result")["x"].type == pa.float64()
+    with pytest.raises(ValueError, match="`x` must have one type in all runs; got double, str"):
+        arrow.of_runs([words, numbers], "result")
 
 
 def test_a_table_that_a_run_lacks_is_refused(ran):

@@ -21,14 +21,6 @@ def test_a_periodic_box_holds_all_of_every_packet(width):
     assert fields.packets(SIZE, what).sum() == pytest.approx(expected, rel=1e-6)
 
 
-def test_packets_go_on_across_the_border():
-    # Far wider than the box they are level, and level across the border too.
-    plane = fields.packets(SIZE, fields.Packets(3, 20.0, 1.0, 0))
-    inside = np.abs(np.diff(plane, axis=0)).max()
-    across = np.abs(plane[0] - plane[-1]).max()
-    assert across <= 1.01 * inside
-
-
 def test_the_seed_alone_decides_where_packets_are():
     seeded = [fields.Packets(4, 2.0, 1.0, seed) for seed in (7, 7, 8)]
     one, same, other = (fields.packets(SIZE, packets) for packets in seeded)
@@ -80,16 +72,6 @@ def test_one_node_is_a_gaussian_across_the_seam(dtype):
     x, y = np.meshgrid(np.arange(32), np.arange(24), indexing="ij")
     dx, dy = (x - 31.5 + 16) % 32 - 16, (y - 0.25 + 12) % 24 - 12
     np.testing.assert_allclose(found, np.exp(-(dx**2 + dy**2) / 4.5), atol=1e-6)
-
-
-def test_a_node_weighs_the_same_wherever_it_lies_and_in_every_image_of_the_box(float64):
-    at = np.random.default_rng(0).uniform(-50, 50, (20, 2))
-    total = np.sum(splat(at, SIZE, 1.5))
-    np.testing.assert_allclose(total, 20 * 2 * np.pi * 1.5**2, rtol=1e-7)
-    at = np.random.default_rng(1).uniform(0, 24, (5, 2))
-    shift = np.array([32.0 * 3, -24.0 * 2])
-    one, other = (splat(a, SIZE, 2.0) for a in (at, at + shift))
-    np.testing.assert_allclose(one, other, atol=1e-12)
 
 
 def test_saturated_density_counts_what_is_covered_once():
@@ -199,17 +181,3 @@ def test_repulsion_can_be_differentiated(gradient, require_slope, float64):
         return jnp.sum(weights * slope_at(gradient, positions))
 
     require_slope(total, positions, rtol=1e-7)
-
-
-@pytest.mark.parametrize("size", [(8, 9), (24, 37)])
-def test_a_transform_smooths_by_products_of_its_weights(size, float64):
-    smooth, slope = zip(
-        *(fields.WEIGHTS[fields.gaussian](cells) for cells in size), strict=True
-    )
-    density = np.zeros(size)
-    density[2, 3] = 1.0
-    rolled = [
-        np.roll(np.outer(*pair), (2, 3), (0, 1))
-        for pair in ((slope[0], smooth[1]), (smooth[0], slope[1]))
-    ]
-    np.testing.assert_allclose(jax.jit(fields.gaussian)(density), rolled, atol=1e-14)

@@ -53,12 +53,6 @@ def test_equal_bodies_share_the_colours_of_the_first_chunk(crowd):
     assert {len(colour.partner) for colour in rods.joint_colours} == {3 * edges}
 
 
-def test_few_bodies_are_one_chunk(monkeypatch):
-    two = bodies.combined([bodies.placed(bodies.chain(9, 1.0), (0.0, y)) for y in (0.0, 9.0)])
-    monkeypatch.setattr(chunks, "CHUNK", 18)
-    assert filaments.first_chunk(two.member, two.edges, two.joints) == (18, 16)
-
-
 def test_bodies_that_differ_in_nodes_or_in_edges_are_one_chunk(crowd):
     other = bodies.placed(bodies.chain(8, 1.0), (150.0, 0.0))
     mixed = bodies.combined([crowd, other])

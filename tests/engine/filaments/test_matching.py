@@ -90,18 +90,6 @@ def test_pieces_move_apart(float64):
         np.testing.assert_allclose(found[part], expected, atol=1e-12)
 
 
-def test_absent_nodes_have_no_weight(float64):
-    long, short = bodies.chain(9, 1.0), bodies.chain(6, 1.0)
-    start = disturbed(long, float64)
-    found = matched(
-        start, rest_of(long, float64), build_layout(long, float64), np.arange(9) < 6
-    )
-    expected = matched(
-        np.asarray(start)[:6], rest_of(short, float64), build_layout(short, float64)
-    )
-    np.testing.assert_allclose(np.asarray(found)[:6], expected, atol=1e-12)
-
-
 def test_it_can_be_differentiated(body, float64, require_slope):
     layout, weights = build_layout(body, float64), np.arange(2.0 * len(body.positions))
 

@@ -70,13 +70,6 @@ def test_displacements_sum_to_zero_and_bending_keeps_the_mean_angle(disturbed):
     np.testing.assert_allclose(np.mean(turned), np.mean(angles), atol=1e-13)
 
 
-def test_displacements_sum_to_zero_in_float32():
-    rods, rest, positions, angles = prepared(bodies.chain(100, 1.0), np.float32, 0.2)
-    moved, _ = project(positions, angles, rods, rest, iterations=50)
-    total = np.sum(np.asarray(moved, float) - np.asarray(positions, float), 0)
-    np.testing.assert_allclose(total, 0, atol=1e-4)
-
-
 def test_errors_of_length_and_angle_fall(disturbed, body):
     rods, rest, positions, angles = disturbed
     lengths, joints = [], []
@@ -134,6 +127,7 @@ def test_angles_follow_a_body_through_many_turns(float64):
     np.testing.assert_allclose(np.asarray(angles) - start, turn, rtol=1e-12)
 
 
+@pytest.mark.long
 def test_projection_can_be_differentiated(disturbed, require_slope):
     rods, rest, positions, angles = disturbed
     stiffness = (rods.stretch * 0.9, rods.bend * 0.9)
@@ -165,47 +159,9 @@ def test_displacements_of_one_sweep_sum_to_zero_at_branches_too(float64, urchin)
         np.testing.assert_allclose(np.sum(np.asarray(turned) - angles), 0, atol=1e-13)
 
 
-def test_displacements_of_each_creature_sum_to_zero(float64, urchin):
-    body = bodies.combined([urchin, bodies.placed(bodies.star(5, 6, 1.0), (60.0, 0.0))])
-    rods, rest, positions, angles = prepared(body, float64, 0.3)
-    moved, _ = project(positions, angles, rods, rest, iterations=10)
-    for number in range(body.count):
-        own = body.member == number
-        np.testing.assert_allclose(
-            np.sum((np.asarray(moved) - positions)[own], 0), 0, atol=1e-12
-        )
-
-
 def test_a_branched_body_comes_back_to_its_rest_shape(dtype, urchin):
     rods, rest, positions, angles = prepared(urchin, dtype, 0.3)
     moved, turned = project(positions, angles, rods, rest, iterations=1000)
     assert edge_error(positions, urchin) > 0.1
     assert edge_error(moved, urchin) <= 1e-5
     assert joint_error(turned, urchin, rest) <= 1e-5
-
-
-@pytest.fixture
-def closing(dtype):
-    """A straight chain that is asked to become a circle."""
-    rods, rest, positions, angles = prepared(bodies.chain(32, 1.0), dtype)
-    return rods, replace(rest, angle=jnp.full(30, 2 * np.pi / 31, dtype)), positions, angles
-
-
-def test_a_straight_chain_becomes_a_circle(closing):
-    rods, rest, positions, angles = closing
-    body = bodies.chain(32, 1.0)
-    assert joint_error(angles, body, rest) > 0.2
-    positions, angles = project(positions, angles, rods, rest, iterations=1000)
-    shown = edge_angles(positions, rods)
-    assert joint_error(angles, body, rest) <= 2e-3
-    assert joint_error(shown, body, rest) <= 2e-3
-
-
-@pytest.mark.parametrize("dtype", ["float64"], indirect=True)
-def test_the_circle_of_a_closed_chain_has_the_radius_of_its_turns(closing):
-    rods, rest, positions, angles = closing
-    positions, _ = project(positions, angles, rods, rest, iterations=10_000)
-    positions = np.asarray(positions)
-    centre = np.mean(positions[1:], 0)
-    radius = np.sqrt(np.sum((positions - centre[None]) ** 2, 1))
-    np.testing.assert_allclose(radius, 0.5 / np.sin(np.pi / 31), rtol=1e-5)

@@ -25,18 +25,6 @@ def step(f, force, rates):
     return fluid.stream(fluid.collide(f, fluid.density(f), fluid.momentum(f), force, rates))
 
 
-def total_momentum(f):
-    return np.array([np.sum(np.asarray(m, float)) for m in fluid.momentum(f)])
-
-
-def test_a_force_adds_itself_to_the_momentum_in_every_step(float64):
-    f, rates = random_populations(), fluid.rates(jnp.asarray(0.02))
-    force = jnp.asarray(1e-3 * np.random.default_rng(1).normal(size=(2, *SIZE)) + 1e-3)
-    after = step(f, force, rates)
-    gained = total_momentum(after) - total_momentum(f)
-    np.testing.assert_allclose(gained, np.sum(force, (1, 2)), rtol=1e-12)
-
-
 def test_collision_keeps_momentum_in_every_cell_but_for_the_force(float64):
     f, rates = random_populations(), fluid.rates(jnp.asarray(0.02))
     force = jnp.asarray(1e-3 * np.random.default_rng(1).normal(size=(2, *SIZE)))

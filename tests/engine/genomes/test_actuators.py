@@ -16,6 +16,13 @@ from microcosmos.spec.evolution import UNLIMITED
 STEPS = 300
 
 
+@pytest.mark.parametrize("name", ["max_speed", "max_bend"])
+def test_a_bound_is_above_0(name):
+    layout = build_layout(bodies.chain(3, 1.0))
+    with pytest.raises(ValueError, match=f"`{name}` must be above 0, or None"):
+        Actuators(layout, **{name: 0.0})
+
+
 @pytest.fixture
 def scene(float64):
     """A world with a filament, its layout, and a drive that bends it `rate` rad a step."""

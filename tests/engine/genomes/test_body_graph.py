@@ -1,4 +1,4 @@
-"""Grown bodies in a fluid: momentum, lengths, soft joints, and the kernel beside JAX."""
+"""Grown bodies in a fluid: momentum, lengths and soft joints."""
 
 from functools import cache
 
@@ -21,8 +21,6 @@ PLANS = 20
 BODY = spec.GrownBody(
     builder="grown", nodes=24, length=18.0, segments=6, segment_nodes=16, rings=2
 )
-ROUNDING = {1: 4, 10: 16, 100: 64}
-"""Differences of the kernel and JAX after so many steps, in roundings of a position."""
 
 
 def task_of(softest=1.0, *, limits=True, **box):
@@ -45,9 +43,26 @@ def population():
     return jax.jit(jax.vmap(lambda key: body_plans.mutated(key, 8, rates)))(keys)
 
 
+def test_a_grown_body_begins_in_the_middle_however_few_nodes_it_has(population):
+    task, control = task_of()
+    network = padded(any_network(control, np.random.default_rng(0)), ROOM)
+
+    @jax.jit
+    def begun(plan):
+        driven = drive(task, genomes.BodyGraph(plan, network), differentiable=True)
+        return driven.world.present, driven.start.positions
+
+    counts = set()
+    for index in range(PLANS):
+        present, positions = begun(body_plans.member(population, index))
+        counts.add(int(present.sum()))
+        np.testing.assert_allclose(positions[present].mean(0), (20, 20), atol=1e-4)
+    assert min(counts) < BODY.nodes, "no body lacks a node"
+
+
 @pytest.fixture(scope="module")
 def swum(population):
-    """A function that simulates all plans with random networks, as JAX and the kernel do."""
+    """A function that simulates all plans with random networks."""
 
     @cache
     def swim(softest, limits):
@@ -64,7 +79,7 @@ def swum(population):
                 return measures, jnp.stack([jnp.sum(one) for one in momentum])
 
             _, found = world.rollout(*given, observe)
-            return _arrays(driven, *found, world.native.rollout(*given)[1])
+            return _arrays(driven, *found)
 
         networks = [padded(any_network(control, random), ROOM) for _ in range(PLANS)]
         genotypes = [
@@ -79,27 +94,16 @@ def swum(population):
 @pytest.mark.long
 @pytest.mark.parametrize("softest", [1.0, 0.1])
 def test_grown_bodies_give_the_fluid_no_impulse(swum, softest):
-    impulses = [np.hypot(*momentum.T).max() for *_, momentum, _ in swum(softest, True)]
+    impulses = [np.hypot(*momentum.T).max() for *_, momentum in swum(softest, True)]
     assert max(impulses) <= units.MAX_IMPULSE
     assert max(impulses) > 0
-
-
-@pytest.mark.parametrize("softest", [1.0, 0.1])
-def test_the_kernel_moves_grown_bodies_as_jax_does(swum, softest):
-    pytest.importorskip("microcosmos_kernels")
-    for _, _, measures, _, native in swum(softest, True):
-        for name in ("positions", "force", "speed", "curvature", "centre"):
-            ours, theirs = np.asarray(getattr(native, name)), getattr(measures, name)
-            unit = np.finfo(np.float32).eps * (32 + np.abs(theirs).max())
-            for steps, most in ROUNDING.items():
-                assert np.abs(ours - theirs)[:steps].max() <= most * unit, (name, steps)
 
 
 @pytest.mark.long
 def test_edges_keep_their_rest_length(swum):
     """But for those of bent rings, whose joints disagree: least squares gives these."""
     rings = 0
-    for boned, rest, measures, *_ in swum(1.0, False):
+    for boned, rest, measures, _ in swum(1.0, False):
         edges, there, shapes = boned
         length, fitted = (_lengths(one, edges) for one in (measures.positions, shapes))
         closed = there[BODY.nodes :].any()
@@ -108,17 +112,6 @@ def test_edges_keep_their_rest_length(swum):
         if not closed:
             assert np.abs(length - rest.length)[:, there].max() < 2e-4
     assert 0 < rings < PLANS
-
-
-def test_bodies_move_and_stay_in_the_middle_as_they_start(swum):
-    moved = []
-    for (edges, there, _), _, measures, *_ in swum(1.0, True):
-        present = np.unique(edges[there])
-        positions = measures.positions[:, present]
-        moved.append(np.abs(positions[-1] - positions[0]).max())
-        np.testing.assert_allclose(positions[0].mean(0), [20, 20], atol=0.05)
-        assert np.isfinite(measures.positions).all()
-    assert np.median(moved) > 0.1
 
 
 ROOTS = {
@@ -162,16 +155,6 @@ def test_soft_joints_relax_exponentially(root, native):
     np.testing.assert_allclose(error, expected, atol=2e-5)
 
 
-@pytest.mark.long
-def test_stiff_joints_have_no_error_to_keep(population):
-    task, _ = task_of()
-    assert task.encoding.softest == 1
-    plan = body_plans.member(population, 0)
-    network = task.encoding.newcomer(key=jax.random.key(0)).network
-    box, *_ = developed(task, genomes.BodyGraph(plan, network))
-    assert box.layout.bend is None
-
-
 def developed(task, genotype):
     """The world and the start of a creature, and its rest shape at first, from one program."""
 
@@ -187,10 +170,10 @@ def _observed(box, start, rest):
     return world.rollout(box, start, rest, lambda state, measures: measures)
 
 
-def _arrays(driven, measures, momentum, native):
+def _arrays(driven, measures, momentum):
     rods, rest = driven.world.rods, driven.inputs
     shapes = filaments.rest_positions(rest, driven.world.layout)
-    return (rods.edges, rods.stretch > 0, shapes), rest, measures, momentum, native
+    return (rods.edges, rods.stretch > 0, shapes), rest, measures, momentum
 
 
 def _lengths(positions, edges):

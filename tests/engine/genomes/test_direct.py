@@ -7,8 +7,11 @@ import pytest
 
 from microcosmos import bodies, genomes, spec
 from microcosmos.build import build_task
+from microcosmos.build.scene import build_form
 from microcosmos.filaments import edge_angles, wrap
 from microcosmos.genomes import Drive, Vector
+from microcosmos.measures import FORMS
+from microcosmos.search.simulation import drive
 
 STEPS = 40
 
@@ -101,40 +104,64 @@ def test_waves_are_scaled_as_a_network_s_outputs_are(grow):
         np.testing.assert_allclose(edge, 1 - 0.2 * 0.25 * np.cos(t), atol=1e-12)
 
 
-def test_a_phase_moves_the_wave_ahead(grow):
-    angles = np.tile([0.5, 0.1, 0.2, -0.3], 7)
-    task, driven = grow({"nodes": 9}, {"angles": angles})
-    values = np.concatenate([angles, np.zeros(4 * 8)])
-    ahead = driven_by(task, values, np.float64(np.pi / 2))
-    late, early = (np.asarray(one.inputs.angle) for one in (driven, ahead))
-    np.testing.assert_allclose(early[:20], late[5:25], atol=1e-12)
+def test_an_edge_alone_has_a_wave_and_no_joint(grow):
+    body = {"builder": "polyline", "points": [[0, 0], [1, 0]]}
+    _, driven = grow(body, {"lengths": [0.5, 0.0]}, terms=1, length_scale=0.2)
+    assert driven.inputs.angle.shape == (STEPS, 0)
+    wave = np.sin(2 * np.pi * np.arange(STEPS) / 20)
+    np.testing.assert_allclose(driven.inputs.length[:, 0], 1 + 0.1 * wave, atol=1e-12)
 
 
-def test_contradicting_turns_around_a_branch_are_averaged():
-    body = bodies.star(4, 3, 1.0)
-    found = bodies.layout(body)
-    assert len(body.joints) == len(body.edges) == 12
-    assert np.linalg.matrix_rank(found.turned) == 11
-    turned = found.turned @ np.ones(12)
-    first, second = body.joints.T
-    around = np.all(body.edges[body.joints].min(2) == 0, 1)
-    np.testing.assert_allclose((turned[second] - turned[first])[around], 0, atol=1e-12)
-    np.testing.assert_allclose((turned[second] - turned[first])[~around], 1, atol=1e-12)
+TWO = {
+    "builder": "graph",
+    "nodes": [*([x, 0] for x in range(3)), *([x, 6] for x in range(8))],
+    "edges": [[0, 1], [1, 2], *([x, x + 1] for x in range(3, 10))],
+}
+BODIES = [{"nodes": 9}, STAR, {"builder": "ring", "nodes": 7}, TWO]
 
 
-def test_newcomers_differ_and_stay_within_their_spread(grow):
-    task, _ = grow({"nodes": 9}, {}, spread=0.5, faintest=0.01, **FREE)
-    keys = jax.random.split(jax.random.key(0), 200)
-    values = jax.jit(jax.vmap(lambda key: task.encoding.newcomer(key=key).values))(keys)
-    parts = jax.device_get(jax.jit(jax.vmap(task.encoding.divided))(values))
-    assert len(np.unique(np.asarray(values), axis=0)) == 200
-    assert 0.49 < np.abs(parts["rest_angle"]).max() <= 0.5
-    for name in ("angles", "lengths"):
-        # Even on a log scale from 0.5 to 0.005: the mean is in the middle.
-        strongest = np.log(np.abs(parts[name]).max(1))
-        assert abs(strongest.mean() - np.log(0.05)) < 3 * np.log(100) / np.sqrt(12 * 200)
-    strength = [np.log(np.abs(parts[name]).max(1)) for name in ("angles", "lengths")]
-    assert abs(np.corrcoef(*strength)[0, 1]) < 0.25
+@pytest.mark.parametrize("body", BODIES, ids=["chain", "star", "ring", "two"])
+def test_measures_are_of_the_body_that_is_inherited(grow, body):
+    task, _ = grow(body, {}, **FREE, max_speed=None, max_bend=None, lag=0)
+    count = sum(task.encoding.parts.values())
+    values = np.random.default_rng(3).uniform(-1, 1, count)
+    values[count - sum(task.encoding.parts[name] for name in ("angles", "lengths")) :] = 0
+    driven = jax.jit(lambda values: developed(task, values))(values)
+    world, start, rest, length, form = driven
+    edges, positions = np.asarray(world.rods.edges), np.asarray(start.positions)
+    lengths = np.asarray(rest.length[0])
+    own = bodies.from_edges(positions, edges, rest_length=lengths)
+    np.testing.assert_allclose(length, bodies.extent(own), rtol=1e-12)
+    assert length != pytest.approx(task.length, rel=1e-3)
+    expected = build_form(own)
+    np.testing.assert_allclose([form[name] for name in FORMS], expected, rtol=1e-5)
+    before, piece = np.asarray(task.start.positions), bodies.pieces(edges, len(positions))
+    for one in range(piece.max() + 1):  # Filaments stay apart.
+        middles = (nodes[piece == one].mean(0) for nodes in (positions, before))
+        np.testing.assert_allclose(*middles, atol=1e-12)
+
+
+def developed(task, values):
+    driven = drive(task, Vector(values), differentiable=True)
+    return driven.world, driven.start, driven.inputs, driven.length, driven.form
+
+
+def test_the_length_of_a_body_can_be_differentiated(grow, require_slope):
+    task, _ = grow({"nodes": 6}, {}, **FREE)
+    count = sum(task.encoding.parts.values())
+    values = np.random.default_rng(0).uniform(-1, 1, count)
+    require_slope(lambda values: developed(task, values)[3], values, seed=1)
+
+
+@pytest.mark.parametrize("stiff", [True, False], ids=["matched", "swept"])
+def test_an_inherited_bend_is_none_that_actuators_add(grow, stiff):
+    free = {"rest_angle": {"low": -0.4, "high": 0.4}}
+    free |= {} if stiff else {"stretch": {"low": 0.2, "high": 1.0}}
+    task, _ = grow({"nodes": 9}, {}, **free, max_bend=1.0, max_speed=None, lag=0)
+    values = np.zeros(sum(task.encoding.parts.values()))
+    values[:7] = 1.0  # In all 2.8 rad.
+    rest = jax.jit(lambda values: developed(task, values)[2])(values)
+    np.testing.assert_allclose(rest.angle, 0.4, atol=1e-12)
 
 
 def test_start_shapes_can_be_differentiated(grow, require_slope):
@@ -186,46 +213,3 @@ def test_a_table_is_interpolated_and_closes_upon_itself(weights, phase, terms):
     for item, row in enumerate(rows):
         expected = np.interp(places, np.arange(terms), row, period=terms)
         np.testing.assert_allclose(found[:, item], expected, atol=1e-12)
-
-
-@pytest.mark.fast
-def test_a_linear_timer_runs_through_the_table_once(weights, float64):
-    phase = genomes.phases(genomes.linear(STEPS, PERIOD), float64)
-    found = waved(genomes.table, phase, 6, weights)
-    places = 6 * np.arange(STEPS) / STEPS
-    expected = np.interp(places, np.arange(6), weights[1], period=6)
-    np.testing.assert_allclose(found[:, 1], expected, atol=1e-12)
-
-
-@pytest.mark.fast
-def test_waves_stay_within_one(phase):
-    found = waved(genomes.fourier, phase, 2, np.ones((2, 4)))
-    assert (np.max(found), np.min(found)) == (1, -1)
-
-
-SIZES, SCALE = (3, 5, 4, 2), 1.7
-
-
-def test_layers_compute_what_matrices_do(float64):
-    layers = genomes.Layers(SIZES, "sin", SCALE)
-    random = np.random.default_rng(0)
-    genes, inputs = random.uniform(-1, 1, layers.genes), random.normal(size=(3, 7))
-    values, rest = inputs, genes
-    for before, after in ((3, 5), (5, 4), (4, 2)):
-        rows, rest = rest[: after * (before + 1)], rest[after * (before + 1) :]
-        rows = SCALE * rows.reshape(after, before + 1)
-        values = rows[:, 1:] @ values + rows[:, :1]
-        values = np.sin(values) if after != 2 else values
-    found = jax.jit(lambda *given: genomes.forward(layers, *given))(genes, inputs)
-    np.testing.assert_allclose(found, values, rtol=1e-12)
-    assert not len(rest)
-
-
-def test_size_and_genes_are_those_of_the_layers():
-    control = spec.Weights(hidden=(5, 4))
-    task = build_task(spec.Scene(control=control))
-    genotype = task.encoding.newcomer(key=jax.random.key(0))
-    hidden, connections = task.encoding.size(genotype)
-    assert (hidden, connections) == (9, 5 * 5 + 5 * 4 + 4 * 2)
-    assert genotype.values.shape == (5 * 5 + 5 + 5 * 4 + 4 + 4 * 2 + 2,)
-    assert spec.gene_count(control, spec.shape(spec.Chain())) == len(genotype.values)

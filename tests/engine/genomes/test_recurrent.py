@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import bodies, fields, genomes, search, spec
+from microcosmos import fields, genomes, search, spec
 from microcosmos.build import build_controls, build_task
 from microcosmos.search import simulate
 from microcosmos.spec import Control
@@ -89,16 +89,6 @@ def test_values_follow_the_plain_recursion(task, cyclic):
     np.testing.assert_allclose(rest.length[:, 0], length, rtol=1e-12)
 
 
-def test_without_hidden_nodes_a_recurrent_network_is_a_feed_forward_one(task, float64):
-    whole = task()
-    network = genomes.minimal(jax.random.key(3), 3, 2, 12, 16)
-    genes = {name: getattr(network, name).astype(float64) for name in ("bias", "weight")}
-    network = replace(network, **genes)
-    plain = replace(whole.encoding, recurrent=False)
-    one, other = (rest_of(replace(whole, encoding=e), network) for e in (whole.encoding, plain))
-    np.testing.assert_allclose(one.angle, other.angle, rtol=1e-12)
-
-
 def test_a_closed_loop_that_senses_nothing_is_the_open_one(task, cyclic):
     opened, closed = task(), task(sense_energy=True)
     start = replace(closed.start, energy=jnp.zeros_like(closed.start.energy))
@@ -113,17 +103,6 @@ def test_a_closed_loop_that_senses_nothing_is_the_open_one(task, cyclic):
     np.testing.assert_allclose(applied.angle, expected.angle, rtol=1e-12, atol=1e-14)
     np.testing.assert_allclose(applied.length, expected.length, rtol=1e-12)
     assert end.memory.shape == (12, 5)
-
-
-def test_gradients_flow_through_time(task, cyclic, require_slope):
-    whole, network = task(), cyclic(3)
-
-    def last(weight):
-        grown = replace(network, weight=weight)
-        driven = whole.encoding.drive(whole.world, whole.start, grown, None)
-        return jnp.sum(driven.inputs.angle[-1])
-
-    assert abs(require_slope(last, network.weight, seed=2)) > 1e-3
 
 
 STEPS, SIZE = 60, (32, 32)
@@ -195,20 +174,6 @@ def test_energy_changes_the_motion_only_if_the_network_uses_it(foragers, network
     assert unmoved == pytest.approx(opened["bending_effort"], rel=1e-12)
     here, there = closed(network(4, 1.0)), closed(network(4, 1.0), elsewhere)
     assert abs(here["bending_effort"] / there["bending_effort"] - 1) > 1e-3
-
-
-def test_a_response_is_what_a_batch_develops(network, float64):
-    body = bodies.chain(9, 1.0)
-    controls = build_controls(Control(period=30, ramp=0.2), body, STEPS)
-    developed = jax.device_get(jax.jit(lambda one: genomes.develop(one, controls))(network(5)))
-    sensing, cppn = replace(controls, senses=True), network(6, 0.0)
-    read = genomes.function_of(cppn)
-    respond = jax.jit(lambda *given: genomes.rest_shape(read, sensing, *given))
-    for t in (0, 7, 59):
-        sensed = jnp.asarray(np.random.default_rng(t).uniform(0, 2, 9))
-        rest = respond(jnp.asarray(controls.timer[:, t]), jnp.asarray(controls.ramp[t]), sensed)
-        np.testing.assert_allclose(rest.angle, developed.angle[t], rtol=1e-13, atol=1e-15)
-        np.testing.assert_allclose(rest.length, developed.length[t], rtol=1e-13)
 
 
 @pytest.mark.long

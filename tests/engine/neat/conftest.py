@@ -25,11 +25,10 @@ def settings():
 
 @pytest.fixture(scope="session")
 def shrinking(settings):
-    """The same with deletion, TensorNEAT's way of choosing, and bounds that move or not."""
+    """The same with deletion, TensorNEAT's way of choosing, and bounds."""
     preset = neat.PRESETS["tensorneat"]
     rates = replace(preset.rates, add_node=0.5, add_connection=0.6, bound=1.5)
-    moving = replace(preset, target_species=4, threshold_step=0.1, threshold=0.2)
-    return replace(moving, rates=rates, max_species=8, survival=0.4)
+    return replace(preset, rates=rates, threshold=0.4, max_species=8, survival=0.4)
 
 
 @pytest.fixture(scope="session")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from microcosmos import neat
-from microcosmos.neat import rng
+from microcosmos.neat import rows
 
 KEYS, PLACES = 4000, 60
 
@@ -17,7 +17,7 @@ KEYS, PLACES = 4000, 60
 def drawn():
     """Numbers, (key, place)."""
     keys = jax.random.split(jax.random.key(0), KEYS)
-    return np.asarray(jax.jit(jax.vmap(lambda k: rng.draws((PLACES,), key=k)[0]))(keys))
+    return np.asarray(jax.jit(jax.vmap(lambda k: rows.draws((PLACES,), key=k)[0]))(keys))
 
 
 def test_every_interval_is_drawn_equally_often(drawn):
@@ -38,14 +38,9 @@ def test_places_are_uncorrelated_and_so_are_keys(drawn):
 def test_the_rest_of_a_draw_is_uniform(drawn):
     for low, high in ((0.0, 0.25), (0.25, 0.9)):
         inside = drawn[(drawn >= low) & (drawn < high)]
-        rest = np.asarray(rng.rescaled(jnp.asarray(inside), low, high))
+        rest = np.asarray(rows.rescaled(jnp.asarray(inside), low, high))
         assert rest.mean() == pytest.approx(0.5, abs=4 * 0.29 / len(rest) ** 0.5)
         assert rest.std() == pytest.approx(12**-0.5, rel=0.01)
-
-
-def test_whole_numbers_stay_below_their_limit():
-    for total, drawn, expected in ((7, rng.LARGEST, 6), (0, rng.LARGEST, 0), (7, 0, 0)):
-        assert rng.below(jnp.asarray(total), jnp.float32(drawn)) == expected
 
 
 @pytest.fixture(scope="module")
@@ -114,13 +109,6 @@ def test_matching_genes_come_from_either_parent_equally_often(families):
     assert off / disabled == pytest.approx(0.75, abs=3 * 0.44 / disabled**0.5)
 
 
-def test_averaging_gives_the_mean_of_matching_weights(families):
-    for genes_a, genes_b, genes in families(0, average=1.0):
-        for number in genes:
-            mean = np.mean([d[number][3] for d in (genes_a, genes_b) if number in d])
-            assert genes[number][3] == pytest.approx(mean, rel=1e-5, abs=1e-6)
-
-
 @pytest.mark.parametrize("small", [0, 19])
 def test_distance_is_the_one_over_dictionaries(parents, each, plain_distance, small):
     coefficients = neat.Coefficients(1.5, 0.5, 0.7, small=small)
@@ -144,11 +132,3 @@ def test_tensorneats_distance_sums_over_nodes_and_connections(parents, each, gen
             total += 0.4 * sum(unlike(one[n], two[n]) for n in one.keys() & two.keys())
             expected += total / max(len(one), len(two))
         assert value == pytest.approx(expected, rel=1e-4)
-
-
-def test_distance_is_symmetric_and_zero_from_a_network_to_itself(parents):
-    coefficients = neat.Coefficients(1.0, 2.0, 0.4)
-    measure = jax.jit(jax.vmap(lambda a, b: neat.distance(a, b, coefficients)))
-    first, second = parents
-    np.testing.assert_allclose(measure(first, second), measure(second, first), rtol=1e-5)
-    assert (np.asarray(measure(first, first)) == 0).all()

@@ -1,7 +1,6 @@
 """Networks grow by NEAT's mutations and stay sound."""
 
 from dataclasses import replace
-from functools import partial
 from itertools import pairwise
 
 import jax
@@ -10,7 +9,6 @@ import numpy as np
 import pytest
 
 from microcosmos import genomes, neat
-from microcosmos.neat import acyclicity
 
 INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32
 
@@ -18,21 +16,6 @@ INPUTS, OUTPUTS, NODES, CONNECTIONS, BATCH = 3, 2, 12, 30, 32
 @pytest.fixture(scope="module")
 def lineages(mutated):
     return [networks for networks, *_ in mutated]
-
-
-def test_minimal_networks_join_every_input_to_every_output(lineages, each):
-    for network in each(lineages[0]):
-        ends = list(zip(network.source[:6], network.target[:6], strict=True))
-        assert sorted(ends) == [(i, o) for i in range(3) for o in (3, 4)]
-        assert network.connection_used.sum() == 6
-
-
-def test_initial_weights_have_standard_deviation_one():
-    keys = jax.random.split(jax.random.key(0), 2000)
-    minimal = jax.vmap(lambda k: neat.minimal(k, INPUTS, OUTPUTS, NODES, CONNECTIONS))(keys)
-    weights = np.asarray(minimal.weight[:, :6])
-    assert weights.std() == pytest.approx(1, abs=0.02)
-    assert weights.mean() == pytest.approx(0, abs=0.03)
 
 
 def test_networks_grow_to_fill_their_room_and_lose_no_genes(lineages):
@@ -71,14 +54,6 @@ def test_a_split_by_the_identity_changes_nothing():
     np.testing.assert_allclose(*values, rtol=1e-5, atol=1e-6)
 
 
-def test_ranks_number_distinct_pairs_and_skip_what_did_not_arise():
-    first, second = jnp.array([4, -1, 2, 4, 2, -1]), jnp.array([1, -1, 5, 1, 6, -1])
-    place, many = neat.numbering.ranks(first, second)
-    assert many == 3
-    assert place[0] == place[3] == 2
-    assert {int(place[2]), int(place[4])} == {0, 1}
-
-
 def test_recurrent_networks_may_hold_cycles_and_loops(lineages, each):
     growth = {"add_node": 0.3, "add_connection": 1.0, "recurrent": True}
     rates = neat.Rates(0.0, 1.0, 0.0, 0.0, 0.0, **growth)
@@ -97,26 +72,3 @@ def test_recurrent_networks_may_hold_cycles_and_loops(lineages, each):
     for network in each(networks):
         c = network.connection_used.sum()
         assert len(set(zip(network.source[:c], network.target[:c], strict=True))) == c
-
-
-@partial(jax.jit, static_argnames="nodes")
-def reach(source, target, used, nodes):
-    """Flags of what each node reaches, and their numbers."""
-    closed = acyclicity.closure(acyclicity.neighbours(source, target, used, nodes))
-    rows = jax.vmap(acyclicity.flags, (None, 0))(closed, jnp.arange(nodes))
-    return rows, acyclicity.sizes(closed)
-
-
-def test_reach_is_what_powers_of_the_adjacency_matrix_say():
-    random = np.random.default_rng(0)
-    for nodes in (5, 32, 33, 70):
-        source, target = random.integers(0, nodes, (2, nodes))
-        joined = np.zeros((nodes, nodes), bool)
-        joined[source, target] = True
-        source, target = np.nonzero(joined)
-        links = (source, target, np.ones(len(source), bool))
-        rows, sizes = reach(*links, nodes)
-        steps = (joined | np.eye(nodes, dtype=bool)).astype(float)
-        ways = np.linalg.matrix_power(steps, nodes) > 0
-        np.testing.assert_array_equal(rows, ways)
-        np.testing.assert_array_equal(sizes, ways.sum(1))

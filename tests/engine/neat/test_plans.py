@@ -1,10 +1,7 @@
 """Variation of body plans: valid plans, what each operation does, crossover and distance."""
 
-from functools import partial
-
 import body_plans
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from body_plans import LIMITS, different, plan_of, to_jax
@@ -27,7 +24,7 @@ LIMITS_OF = {"many": LIMITS, "few": SMALL}
 
 
 @pytest.fixture(
-    scope="module", params=[400, pytest.param(10_000, marks=pytest.mark.long)], ids=str
+    scope="module", params=[400, pytest.param(2_000, marks=pytest.mark.long)], ids=str
 )
 def count(request):
     return request.param
@@ -107,15 +104,7 @@ def test_a_child_has_the_structure_of_the_fitter_and_whole_segments_of_either(va
     assert taken > 0
 
 
-def test_the_distance_is_zero_for_equal_plans_and_symmetric(varied):
-    measure = jax.jit(jax.vmap(lambda a, b: plans.plan_distance(a, b, COEFFICIENTS)))
-    other = Plan(*(np.roll(one, 1, 0) for one in varied))
-    assert not np.asarray(measure(varied, varied)).any()
-    there, back = np.asarray(measure(varied, other)), np.asarray(measure(other, varied))
-    np.testing.assert_allclose(there, back, rtol=1e-5)
-    assert (there > 0).mean() > 0.9
-
-
+@pytest.mark.long
 def test_the_distance_counts_unmatched_segments_and_the_genes_of_matching_ones():
     a = plan_of({"nodes": 4}, {"nodes": 3, "place": 0.5}, {"nodes": 3, "number": 5})
     b = plan_of({"nodes": 4}, {"nodes": 11, "place": 0.75, "mirrored": True})
@@ -147,47 +136,3 @@ def test_a_structural_mutation_is_alone_and_has_a_novelty(some):
         assert varied.novelty.of[index] == one.number[one.parent[row]]
     steps = np.array(different(after, some))[~varied.changed]
     assert set().union(*steps) == set(plans.VALUES)
-
-
-def test_steps_of_numbers_have_their_rate_and_size():
-    plan = plan_of(*[{"nodes": 8, "place": 0.5, "stiffness": 0.5}] * 8)
-    rates = plans.PlanRates(LIMITS, structure=0.0, values=0.25, vary=1.0)
-    keys = jax.random.split(jax.random.key(4), 2000)
-    vary = jax.jit(jax.vmap(lambda key: plans.mutate_plan(to_jax(plan), rates, key=key)[0]))
-    after = jax.device_get(vary(keys))
-    for name, size in (("angle", 0.4), ("curl", 0.5)):
-        step = getattr(after, name) - getattr(plan, name)
-        assert abs((step != 0).mean() - 0.25) < 0.01
-        moved = step[step != 0]
-        assert abs(moved.mean()) < 0.05 * size
-        assert abs(moved.std() / size - 1) < 0.05
-
-
-def test_equal_mutations_of_a_generation_share_a_number():
-    plan = plan_of({"nodes": 20}, {"nodes": 8, "number": 2, "place": 0.5})
-    many = 400
-    batch = Plan(*(np.repeat(one[None], many, 0) for one in plan))
-    rates = plans.PlanRates(LIMITS, structure=1.0, values=0.0, vary=0.0)
-    keys = jax.random.split(jax.random.key(4), many)
-
-    @jax.jit
-    def vary(batch):
-        children, varied = jax.vmap(partial(_mutate, rates))(batch, keys)
-        first = jnp.asarray(10)
-        return neat.numbering.number_plan(children, varied.novelty, first), varied.novelty
-
-    (children, used), novelty = jax.device_get(vary(to_jax(batch)))
-    numbers = {}
-    for index in np.flatnonzero(novelty.row >= 0):
-        who = int(novelty.of[index]), int(novelty.operation[index])
-        numbers.setdefault(who, set()).add(int(children.number[index, novelty.row[index]]))
-    assert set(numbers) == {(of, way) for of in (0, 2) for way in (ADD, SPLIT)}
-    assert all(len(found) == 1 for found in numbers.values())
-    assert set().union(*numbers.values()) == set(range(10, 10 + used))
-    assert used == 4
-    rest = np.delete(children.number, 2, 1)[novelty.row < 0]
-    assert rest.max() <= 2
-
-
-def _mutate(rates, plan, key):
-    return plans.mutate_plan(plan, rates, key=key)

@@ -1,7 +1,6 @@
 """Fitnesses, descriptors, bodies, gaits and encodings as plug-ins, in specs and in runs."""
 
 import json
-from pathlib import Path
 
 import jax
 import numpy as np
@@ -10,8 +9,10 @@ from pydantic import ValidationError
 
 from microcosmos import plugins
 from microcosmos.archive import creature, creature_h5
+from microcosmos.archive.initial import fitting
 from microcosmos.audit.reproducibility import check
 from microcosmos.build import build
+from microcosmos.build.experiments import is_portable
 from microcosmos.plugins import registry
 from microcosmos.spec import estimate, parse, plugins_in
 from microcosmos.spec.evolution import UNLIMITED
@@ -67,8 +68,8 @@ def wiggler():
         return 0.3 * wave, np.zeros((len(time), 7))
     return swimmers.Swimmer("wiggler", body, gait)
 
-@plugins.encoding("pulse", title="A pulse", genes=2, per_joint=1)
-def pulse(genes, clock):
+@plugins.encoding("pulse", title="A pulse", genes=2, per_joint=1, settings=Strict)
+def pulse(genes, clock, settings):
     wave = jnp.sin(clock.phase[:, None] + 3 * genes[0] * clock.joints[None])
     return wave * genes[None, 2:], 0.1 * jnp.cos(clock.phase)[:, None] * clock.edges[None]
 """
@@ -94,6 +95,14 @@ SPEC = {
         "emitters": [{"operator": "gaussian"}],
     },
 }
+
+PLAIN = SPEC | {
+    "body": {"nodes": 8},
+    "control": {"encoding": "direct", "period": 20},
+    "task": {"fitness": "displacement", "steps": 20},
+    "archive": {"descriptors": [{"name": "displacement", "bins": 4}]},
+}
+"""The spec without plug-ins."""
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +169,7 @@ def test_a_spec_can_be_read_without_its_module(away):
         (
             "task",
             {"fitness": "extra.straight", "plugin": {"settings": {"strictness": -1}}},
-            "`plugin.settings.strictness` needs Input should be greater",
+            "`plugin.settings.strictness` needs greater than or equal",
         ),
         ("task", {"plugin": {"settings": {}}}, "must be left out where `fitness` is None"),
         ("body", {"builder": "extra.large"}, "at most the 3 `nodes` that it declares, got 8"),
@@ -172,6 +181,13 @@ def test_a_spec_that_does_not_fit_its_module_is_refused(part, value, words):
     with pytest.raises(ValidationError) as refused:
         parse({**SPEC, part: value})
     assert words in str(refused.value)
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("part", ["body", "control", "task", "archive"])
+def test_a_search_with_any_plugin_promises_no_bits_of_another_processor(part):
+    assert is_portable(parse(PLAIN))
+    assert not is_portable(parse(PLAIN | {part: SPEC[part]}))
 
 
 def test_a_run_measures_selects_and_moves_as_the_module_says(course):
@@ -213,6 +229,32 @@ def test_a_creature_says_what_it_needs_and_repeats_bit_for_bit(course, away):
     assert creature.parse(json.dumps(file)) == file, "a file is read without the module"
     with pytest.raises(plugins.Missing, match=r"extra\."):
         check(file)
+
+
+def test_a_search_begins_only_from_creatures_whose_genes_mean_the_same(course, module, away):
+    experiment, state, _ = course
+    file = creature.parse(json.dumps(experiment.best(state)))
+    same, other = {"plugin": {"settings": {}}}, {"plugin": {"settings": {"strictness": 2}}}
+
+    def begun(body=SPEC["body"], control=same):
+        return parse(SPEC | {"body": body, "control": SPEC["control"] | control})
+
+    chosen = begun()
+    assert fitting(chosen, file) == file["identity"]["genome"]
+    for changed, field in (
+        ({"control": other}, "control.plugin.settings"),
+        ({"body": {"nodes": 9}}, "body"),
+    ):
+        with pytest.raises(creature.CreatureError) as raised:
+            fitting(begun(**changed), file)
+        assert raised.value.field == field
+    away()
+    assert fitting(chosen, file), "without the body's module, only a worker can count joints"
+    module.write_text(MODULE + "# Changed.\n")
+    plugins.load(module)
+    module.write_text(MODULE)
+    with pytest.raises(creature.CreatureError, match=r"control\.plugin\.source"):
+        fitting(begun(), file)
 
 
 def test_a_creature_is_replayed_without_its_measures(course, module, monkeypatch):
@@ -259,9 +301,3 @@ def test_a_plugin_gait_swims_in_a_sweep_beside_known_ones(away):
     chosen = parse(spec).model_dump(mode="json")
     away()
     assert parse(chosen).model_dump(mode="json") == chosen
-
-
-def test_the_example_is_a_module(away):
-    away()
-    found = plugins.load(Path(__file__).parents[3] / "examples" / "plugin_task.py")
-    assert {one.kind for one in found} == {"fitness", "descriptor", "body"}

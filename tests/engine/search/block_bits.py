@@ -14,7 +14,7 @@ import jax  # noqa: E402
 import numpy as np  # noqa: E402
 
 from microcosmos import search  # noqa: E402
-from microcosmos.build import build_block, build_plan  # noqa: E402
+from microcosmos.build import build_block, build_encoding  # noqa: E402
 from microcosmos.spec import parse  # noqa: E402
 
 SMALL = {
@@ -39,10 +39,11 @@ def bits(evaluation: search.Evaluation, slot: int) -> str:
 
 
 def main() -> None:
-    plan = build_plan(SPEC)
-    program = build_block(SPEC.scene, plan.encoding.room)
+    room = (SPEC.genome.max_nodes, SPEC.genome.max_connections)
+    encoding = build_encoding(SPEC.scene, room)
+    program = build_block(SPEC.scene, encoding.room)
     keys = jax.random.split(jax.random.key(0), 32)
-    children = search.emitters.newcomers(plan.encoding.newcomer, keys)
+    children = search.emitters.newcomers(encoding.newcomer, keys)
     networks = jax.device_get(children.genotypes)
 
     def evaluate(order):

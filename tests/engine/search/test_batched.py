@@ -14,12 +14,13 @@ from genotypes import any_genotype
 from microcosmos import filaments, plugins, search, spec, world
 from microcosmos.build import build_stroke, build_task
 from microcosmos.plugins import registry
-from microcosmos.spec.control import NetworkInputs
 
 COUNT = 3
 """Creatures of a block."""
 UNUSED = {
+    "PluginVersion.emits": "no emitter is part of a scene",
     "PluginVersion.settings": "a plug-in without settings runs alike",
+    "Scene.measures": "these measures are computed from the motion",
     "Scene.plugins": "these measures are computed as that of a fitness is",
 }
 """Fields without a case, and why."""
@@ -110,12 +111,12 @@ def test_a_batch_of_disturbed_creatures_measures_what_each_alone_does(
 ):
     scene = scene_of(name)
     task = build_task(scene, float64)
-    spread, size = search.reevaluation.Spread(), task.world.size
+    spread, size = search.disturbance.Spread(), task.world.size
     keys = jax.random.split(jax.random.key(0), COUNT)
-    changes = jax.vmap(lambda key: search.reevaluation.disturbance(spread, size, key=key))(keys)
+    changes = jax.vmap(lambda key: search.disturbance.disturbance(spread, size, key=key))(keys)
     changes = jax.tree.map(lambda x: x.astype(float64) if x.dtype.kind == "f" else x, changes)
     agree(
-        lambda given: search.reevaluation.evaluate_disturbed(task, *given),
+        lambda given: search.disturbance.evaluate_disturbed(task, *given),
         (block_of(scene, task.encoding), changes),
         monkeypatch,
     )
@@ -175,13 +176,3 @@ def operands_of(scene):
 def test_every_encoding_and_field_of_a_scene_has_a_case():
     scenes = [scene_of(name) for name in spec_cases.CASES]
     assert not spec_cases.lacking_in(scenes, UNUSED)
-
-
-@pytest.mark.fast
-def test_every_encoding_that_can_sense_has_a_case_in_closed_loop():
-    parts = {
-        choice for _, choice in spec_cases.fields_of(spec.Scene) if isinstance(choice, type)
-    }
-    able = {part for part in parts if issubclass(part, NetworkInputs)}
-    controls = [scene_of(name).control for name in spec_cases.CASES]
-    assert {type(one) for one in controls if getattr(one, "sense_energy", False)} == able

@@ -1,14 +1,13 @@
 """Cells: bins of a grid, nearest centroids, and Voronoi tessellations."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
 from microcosmos import search
 from microcosmos.device import array
-from microcosmos.search import cells, cvt
+from microcosmos.search import cvt
 
 AXES = (
     search.Axis(measure=0, low=1e-4, high=1e2, bins=6, logarithmic=True),
@@ -47,12 +46,6 @@ def test_a_value_on_an_edge_of_a_logarithmic_bin_is_in_the_upper_one(low, high, 
     for compiled in (axis.bin, jax.jit(axis.bin)):
         assert compiled(array(on)).tolist() == list(range(1, len(edges) + 1))
         assert compiled(array(below)).tolist() == list(range(len(edges)))
-
-
-def test_cells_are_numbered_with_the_last_descriptor_fastest_under_jit_too():
-    grid, place = search.Grid(AXES), jnp.array([[1.01e-3, 0.6]])
-    assert grid.of(place).tolist() == [1 * 4 + 2]
-    assert jax.jit(lambda g, x: g.of(x))(grid, place).tolist() == [6]
 
 
 @pytest.mark.parametrize("axes", [1, 2, 3, 5, 8])
@@ -106,11 +99,6 @@ def test_distances_are_measured_on_the_axes_own_scales():
     assert cells_of(search.voronoi(AXES, around), places).tolist() == [0, 1, 1]
 
 
-def test_too_many_candidates_are_not_listed(monkeypatch):
-    monkeypatch.setattr(cells, "MAX_LISTED", 10)
-    assert cells.candidates(np.random.default_rng(0).random((50, 2))) is None
-
-
 @pytest.mark.parametrize(
     "around",
     [np.zeros((1, 2)), np.zeros((5, 3)), np.full((5, 2), 1.5), np.full((5, 2), np.nan)],
@@ -149,18 +137,6 @@ def test_centroids_lie_at_the_means_of_their_cells():
     assert np.abs(means - found).max() < 0.1 / 8  # A tenth of a cell's width.
 
 
-def test_on_one_axis_cells_are_equal_intervals():
-    found = np.sort(cvt.lloyd(10, 1, seed=0)[:, 0])
-    np.testing.assert_allclose(found, (np.arange(10) + 0.5) / 10, atol=0.02)
-
-
-def test_the_same_numbers_give_the_same_centroids_and_others_others():
-    one = cvt.lloyd(50, 3, seed=1)
-    assert np.array_equal(one, cvt.lloyd(50, 3, seed=1))
-    assert not np.array_equal(one, cvt.lloyd(50, 3, seed=2))
-    assert ((one >= 0) & (one <= 1)).all()
-
-
 def test_centroids_are_kept_on_disk_and_damage_is_noticed(cache, monkeypatch):
     first = cvt.centroids(20, 2, seed=0)
     (path,) = cache.rglob("*.npy")
@@ -170,10 +146,3 @@ def test_centroids_are_kept_on_disk_and_damage_is_noticed(cache, monkeypatch):
         assert np.array_equal(cvt.centroids(20, 2, seed=0), first)
     path.write_bytes(path.read_bytes()[:100])
     assert np.array_equal(cvt.centroids(20, 2, seed=0), first)
-
-
-def test_a_folder_that_cannot_be_written_costs_time_only(tmp_path, monkeypatch):
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    assert cvt.centroids(5, 2, seed=0).shape == (5, 2)

@@ -94,19 +94,6 @@ def test_equal_genomes_survive_once(container):
     assert len(np.unique(found, axis=0)) == len(found)
 
 
-def test_empty_places_hold_nothing(container):
-    archive = filled(container)
-    empty = ~np.asarray(archive.occupied)
-    assert all(not np.asarray(x)[empty].any() for x in jax.tree.leaves(archive))
-
-
-def test_what_is_not_sound_never_enters(container):
-    rows = batch(0, awkward)
-    _, inserted = insert(nothing(container), rows, container)
-    sound = np.isfinite(rows.measures).all(1) & np.isfinite(rows.fitness) & rows.occupied
-    assert not (np.asarray(inserted.entered) & ~sound).any()
-
-
 def by_rule(pool, position, neighbours):
     """Dominated novelty of each row, one after another."""
     place = np.asarray(search.places(pool.measures, AXES), float)
@@ -118,6 +105,7 @@ def by_rule(pool, position, neighbours):
     return found
 
 
+@pytest.mark.long
 def test_dominated_novelty_is_the_mean_distance_to_the_nearest_fitter_elites():
     pool = replace(batch(3), fitness=jnp.arange(40.0)[::-1])
     position = np.arange(40)
@@ -125,15 +113,3 @@ def test_dominated_novelty_is_the_mean_distance_to_the_nearest_fitter_elites():
         search.places(pool.measures, AXES), pool.occupied, jnp.asarray(position), 3
     )
     np.testing.assert_allclose(found, by_rule(pool, position, 3), rtol=1e-5)
-
-
-def test_the_farthest_from_the_fitter_survive():
-    container = CONTAINERS["dominated-novelty"]
-    rows = replace(batch(4), fitness=jnp.arange(40.0)[::-1], occupied=jnp.ones(40, bool))
-    genes = genomes.Vector(jnp.arange(120.0).reshape(40, 3))
-    rows = replace(rows, genotypes=genes)
-    archive, _ = insert(nothing(container), rows, container)
-    novelty = by_rule(rows, np.arange(40), 3)
-    best = set(np.argsort(-novelty, kind="stable")[: container.count].tolist())
-    assert {slot for _, slot in names(archive)} == best
-    assert 0 in best  # The fittest is dominated by nobody.

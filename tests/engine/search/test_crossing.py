@@ -31,6 +31,7 @@ def share(shapes, start=OPEN, **options):
     return float(crossing(recorded(shapes, **options), jnp.asarray(start, jnp.float32)))
 
 
+@pytest.mark.long
 def test_the_share_of_poses_in_which_edges_cross_counts():
     assert share([OPEN]) == 0
     assert share([CROSSED]) == 1
@@ -51,6 +52,7 @@ def test_nodes_that_have_not_grown_cross_nothing():
     assert share([CROSSED], present=[True, True, True, False]) == 0
 
 
+@pytest.mark.long
 def test_random_filaments_cross_where_their_segments_do():
     rng = np.random.default_rng(0)
     shapes = rng.uniform(-20, 20, (FRAMES, 4, 2))
@@ -64,13 +66,3 @@ def test_random_filaments_cross_where_their_segments_do():
     expected = np.mean([cross(*shape) for shape in shapes])
     assert 0.1 < expected < 0.5
     assert share(shapes, edges=apart) == expected
-
-
-def test_of_large_bodies_some_poses_are_looked_at():
-    count = 1000
-    line = np.stack([np.arange(count), np.zeros(count)], 1)
-    bent = line.copy()
-    bent[-1] = 4.5, 1
-    bent[-2] = 4.5, -1
-    edges = np.stack([np.arange(count - 1), np.arange(1, count)], 1)
-    assert share([line, bent], start=line, edges=edges) == 0.5

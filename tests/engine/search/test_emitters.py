@@ -111,24 +111,6 @@ def test_all_children_of_an_empty_archive_are_newcomers(archive):
     assert len(np.unique(children.genotypes.values, axis=0)) == 64
 
 
-def test_each_emitter_is_told_of_its_own_children_alone(outcome_of):
-    class Listener:
-        slots = 2
-
-        def init(self, *, key):
-            return None
-
-        def emit(self, state, archive, *, keys):
-            raise AssertionError("nobody asked for children")
-
-        def tell(self, state, outcome):
-            return outcome.fitness
-
-    outcome = outcome_of(Vector(jnp.zeros((4, GENES))), jnp.arange(4.0))
-    states = search.emitters.tell((Listener(), Listener()), (None, None), outcome)
-    assert [x.tolist() for x in states] == [[0.0, 1.0], [2.0, 3.0]]
-
-
 def minimise(function, start, children, generations, sigma=0.3, seed=0):
     strategy = es.strategy(len(start), children)
 
@@ -161,33 +143,6 @@ def test_an_ellipsoid_of_condition_a_million_is_learnt(float64):
     covariance = m @ m.T
     levels = np.diag(covariance) * scales
     assert levels.max() / levels.min() < 30
-
-
-def test_turning_the_problem_turns_the_search(float64):
-    scales, start = 10.0 ** np.arange(4), np.array([0.5, -0.3, 0.2, 0.1])
-    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(4, 4)))[0]
-    strategy = es.strategy(4, 8)
-    straight, turned = (es.start(array(x), 0.3) for x in (start, turn @ start))
-
-    @jax.jit
-    def step(distribution, z, turn):
-        values = distribution.mean[None] + distribution.sigma * z @ distribution.m.T
-        order = jnp.argsort(jnp.sum(scales[None] * (values @ turn) ** 2, 1))
-        return es.update(distribution, z, order, strategy)
-
-    for z in np.random.default_rng(3).normal(size=(30, 8, 4)):
-        straight = step(straight, z, np.eye(4))
-        turned = step(turned, z @ turn.T, turn)
-    np.testing.assert_allclose(turned.mean, turn @ straight.mean, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(turned.sigma, straight.sigma, rtol=1e-9)
-
-
-def test_weights_are_of_the_better_half_and_sum_to_one():
-    for children in (1, 2, 3, 10, 64):
-        weights = es.strategy(5, children).weights
-        assert weights.sum() == pytest.approx(1)
-        assert (np.diff(weights) <= 0).all()
-        assert len(weights) == max(1, children // 2)
 
 
 @pytest.fixture
@@ -274,20 +229,3 @@ def test_strategies_share_thresholds_and_learn_from_their_own_children_alone(
             jax.tree.leaves(found.distribution), jax.tree.leaves(alone), strict=True
         ):
             np.testing.assert_allclose(mine[i], other, rtol=1e-6)
-
-
-def test_strategies_draw_from_their_own_distributions(emitter):
-    chosen = emitter(emitters=3)
-    state = chosen.init(key=jax.random.key(0))
-    mean = jnp.asarray([[0.5, 0.0], [-0.5, 0.0], [0.0, 0.9]])
-    far = replace(state.distribution, mean=mean, sigma=jnp.full(3, 1e-6))
-    state = replace(state, distribution=far, restart=jnp.zeros(3, bool))
-    archive = search.no_elites(4, 1, Vector(jnp.zeros(2)))
-    keys = jax.random.split(jax.random.key(0), 6)
-    children, _, _ = jax.jit(chosen.emit)(state, archive, keys=keys)
-    np.testing.assert_allclose(children.genotypes.values, np.repeat(mean, 2, 0), atol=1e-4)
-
-
-def test_slots_that_do_not_divide_among_strategies_are_refused(emitter):
-    with pytest.raises(ValueError, match=r"`slots` must be a multiple of `emitters` \(4\)"):
-        emitter(emitters=4)

@@ -1,5 +1,6 @@
 """The verdict on an evaluation by its recorded measures."""
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -14,7 +15,10 @@ def verdict(status=0, **measures):
     for name, value in measures.items():
         row[0, MEASURES.index(name)] = value
     given = Evaluation(jnp.zeros(1), jnp.asarray(row), jnp.full(1, status, jnp.int32))
-    return STATUSES[int(judged(given).status[0])]
+    found, compiled = judged(given).status, jax.jit(judged)(given).status
+    np.testing.assert_array_equal(found, compiled)
+    assert found.dtype == np.int32
+    return STATUSES[int(found[0])]
 
 
 @pytest.mark.parametrize(

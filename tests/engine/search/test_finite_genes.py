@@ -12,7 +12,7 @@ from genotypes import any_genotype
 from microcosmos import device, search, spec
 from microcosmos.build import build_task
 
-ENCODINGS = ("cppn", "cppn-body", "weights", "direct")
+ENCODINGS = ("cppn", "direct")
 BAD = np.float32([np.nan, np.inf, -np.inf])
 
 

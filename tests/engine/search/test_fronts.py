@@ -124,26 +124,7 @@ def test_of_a_long_front_the_ends_and_the_least_crowded_survive(size):
     assert cut > 10
 
 
-def test_equally_crowded_rows_are_kept_by_the_total_order():
-    fronts = search.Fronts(search.Grid((search.Axis(0, 0.0, 1.0, 1),)), COST, 4, least=False)
-    steps = np.arange(7.0)
-    measures = np.stack([steps * 0, steps, 10 ** (steps / 2)], 1)
-    rows = all_of(7 - steps, measures)
-    order = np.arange(7, dtype=np.int32)
-    distance = crowding_distance(0 * order, rows.fitness, steps, order)
-    np.testing.assert_allclose(distance, [np.inf, *[2 / 3] * 5, np.inf], rtol=1e-6)
-    found = survivors(fronts, *ranked(rows, fronts))
-    assert np.asarray(found).sum() == 4
-    assert np.asarray(found)[[0, 6]].all()
-
-
-def test_a_flat_or_very_long_front_has_finite_distances():
-    cell, position = np.zeros(3, np.int32), np.arange(3, dtype=np.int32)
-    for first in ([3e38, 0.0, -3e38], [3e-45, 2e-45, 1e-45]):
-        distance = crowding_distance(cell, np.float32(first), np.ones(3, np.float32), position)
-        assert np.isfinite(distance[1])
-
-
+@pytest.mark.long
 @pytest.mark.parametrize("least", [True, False])
 def test_a_front_does_not_depend_on_when_its_elites_came(least):
     fronts = search.Fronts(GRID, COST, 60, least)
@@ -156,11 +137,6 @@ def test_a_front_does_not_depend_on_when_its_elites_came(least):
         parts, _ = insert(parts, batch, fronts)
     slots = (np.sort(np.asarray(x.slot)[np.asarray(x.occupied)]) for x in (whole, parts))
     np.testing.assert_array_equal(*slots)
-
-
-def test_a_front_of_one_is_refused():
-    with pytest.raises(ValueError, match="`size` must be at least 2"):
-        search.Fronts(GRID, COST, 1)
 
 
 def test_the_area_under_a_quarter_circle():
@@ -180,6 +156,7 @@ def test_areas_of_cells_add_up_whatever_is_dominated_or_below_the_reference():
         assert search.hypervolume(*given) == 1.0 + 1.0 - 0.5 + 1.5
 
 
+@pytest.mark.long
 def test_figures_of_an_archive():
     fronts = search.Fronts(GRID, COST, 3)
     measures = [[1e-3, 0.1, 10.0], [1e-3, 0.1, 100.0], [10.0, 0.9, 1.0], [10.0, 0.9, 1e6]]
@@ -196,53 +173,3 @@ def test_figures_of_an_archive():
     np.testing.assert_allclose(found.hypervolume, 0.25 + 0.25 / 3)
     np.testing.assert_allclose(found.largest_sum, 1.25)
     assert found.mean_length == 2
-
-
-SPACE = search.Vectors(4)
-
-
-def two_optima(vectors):
-    """Nearness to two points, and the first two arguments as descriptors."""
-    near = [1 - np.mean((vectors - top) ** 2, 1) / 4 for top in (-0.5, 0.5)]
-    return near[0], np.stack([vectors[:, 0], vectors[:, 1], near[1]], 1)
-
-
-def search_for(second=2, least=False):
-    axes = tuple(search.Axis(i, -1.0, 1.0, 3) for i in range(2))
-    objective = search.Axis(second, 0.0, 1.0, 1)
-    fronts = search.Fronts(search.Grid(axes), objective, 4, least)
-    emitter = search.emitters.IsoLine(32, SPACE, iso=0.1, line=0.2)
-    return search.Search(SPACE, fronts, [emitter], seed=1)
-
-
-@pytest.mark.long
-def test_a_search_of_ones_own_fills_fronts_and_continues_from_its_file():
-    loop, scores, file = search_for(), [], b""
-    for number in range(12):
-        if number == 6:
-            file = loop.save()
-        loop.tell(*two_optima(loop.ask()))
-        found = loop.elites
-        figures = search.front_figures(found.fitness, found.measures, loop.container)
-        scores.append(figures.moqd_score)
-    assert scores[-1] > 1.05 * scores[0]
-    assert 1 < figures.mean_length <= 4
-    again = search_for()
-    again.restore(file)
-    for _ in range(6):
-        again.tell(*two_optima(again.ask()))
-    assert again.save() == loop.save()
-    first, measures = two_optima(found.genotypes)
-    np.testing.assert_array_equal(found.fitness, np.float32(first))
-    np.testing.assert_array_equal(found.measures, np.float32(measures))
-
-
-@pytest.mark.parametrize("other", [{"second": 1}, {"least": True}])
-def test_a_search_for_another_second_objective_refuses_the_file(other):
-    with pytest.raises(ValueError, match="must be the file's"):
-        search_for(**other).restore(search_for().save())
-
-
-def test_a_search_needs_the_measure_of_the_second_objective():
-    with pytest.raises(ValueError, match="`measures` must be at least 3, got 2"):
-        search.Search(SPACE, search_for().container, search_for().emitters, measures=2)

@@ -59,12 +59,14 @@ def permuted(rows, seed):
     return jax.tree.map(lambda x: x[order], rows)
 
 
+@pytest.mark.long
 def test_axes_are_learned_in_the_first_generation_then_ever_more_rarely():
     container = filled(new(), 1)[1]
     assert [n for n in range(1, 100) if container.changes(n)] == [1, 4, 8, 16, 32, 64]
     assert all(new().changes(n) for n in range(1, 9)), "nothing has been learned yet"
 
 
+@pytest.mark.long
 def test_the_order_of_rows_makes_no_difference_to_the_axes():
     archive, container = filled(new(), 3)
     rows = batch(4)
@@ -89,6 +91,7 @@ def test_the_axes_are_those_of_sound_rows_of_archive_and_candidates():
     np.testing.assert_allclose(place, expected.coordinates(values), atol=1e-4)
 
 
+@pytest.mark.long
 def test_the_first_of_each_learned_cell_survives():
     archive, container = filled(new(), 6)
     rows = batch(9)
@@ -102,6 +105,7 @@ def test_the_first_of_each_learned_cell_survives():
     assert names(after) == {key[-2:] for key in best.values()}
 
 
+@pytest.mark.long
 def test_learning_anew_displaces_and_never_duplicates():
     archive, container = filled(new(), 3)
     rows = replace(batch(4), occupied=jnp.zeros(60, bool))
@@ -114,36 +118,9 @@ def test_learning_anew_displaces_and_never_duplicates():
     assert len(set(cells.tolist())) == len(cells)
 
 
-def test_without_axes_the_first_in_the_total_order_survive():
-    container = new()
-    rows = replace(batch(1), fitness=jnp.arange(60.0), occupied=jnp.ones(60, bool))
-    after, _ = insert(nothing(container), rows, container)
-    assert names(after) == {(1, slot) for slot in range(60 - container.count, 60)}
-
-
 def test_too_few_rows_leave_the_container_as_it_was():
     few = jax.tree.map(lambda x: x[:3], replace(batch(1), occupied=jnp.ones(60, bool)))
     container = new()
     assert container.refreshed(nothing(container), few, 1) is container
     learned = filled(container, 1)[1]
     assert learned.refreshed(nothing(container), few, 4) is learned
-
-
-def test_what_is_not_a_number_counts_as_the_mean_and_infinity_as_an_end():
-    container = filled(new(), 4)[1]
-    row = np.array(batch(4).measures[:1])
-    odd = np.repeat(row, 3, 0)
-    odd[1, 2], odd[2, 2] = np.nan, np.inf
-    mean = row.copy()
-    mean[0, 2] = container.learned.mean[2]
-    found = np.asarray(container.coordinates(jnp.asarray(odd)))
-    assert np.isfinite(found).all()
-    expected = np.asarray(container.coordinates(jnp.asarray(mean)))[0]
-    np.testing.assert_allclose(found[1], expected, atol=1e-5)
-
-
-def test_fewer_measures_than_axes_are_refused():
-    with pytest.raises(ValueError, match=r"`columns` must be at least as many as `axes` \(2\)"):
-        search.learned_axes(GRID, (0,))
-    with pytest.raises(ValueError, match="`floors` must be as many as `columns`"):
-        search.learned_axes(GRID, (0, 1), floors=(1.0,))

@@ -7,11 +7,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import neat, search
-from microcosmos.genomes import Vector, minimal
-from microcosmos.naming import FORMS, WITHOUT_GRADIENT
+from microcosmos import search
+from microcosmos.genomes import Vector
 from microcosmos.search import emitters, folding
-from microcosmos.search.gradients import genes_of
 
 GENES, SLOTS, CELLS = 12, 8, 100
 KEYS = jax.random.split(jax.random.key(7), SLOTS)
@@ -39,6 +37,7 @@ def slopes(rows, finite=True):
     return search.Slopes(jnp.asarray(rows, jnp.float32)[None], jnp.asarray([finite]))
 
 
+@pytest.mark.long
 def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
     emitter, theta = mega(), jnp.full(GENES, 0.1)
     children, state = emitted(emitter, emitter.init(key=KEYS[0]), archive(Vector(theta), True))
@@ -52,19 +51,6 @@ def test_children_of_cma_mega_are_theta_and_combinations_of_unit_slopes():
 
 
 @pytest.mark.long
-def test_cma_mega_begins_with_newcomers_and_then_at_an_elite(outcome_of):
-    emitter = mega()
-    nobody = archive(Vector(jnp.zeros(GENES)), False)
-    children, state = emitted(emitter, emitter.init(key=KEYS[0]), nobody)
-    first = children.genotypes.values
-    children, state = emitter.learn(state, children, slopes(np.ones((3, GENES))))
-    np.testing.assert_array_equal(children.genotypes.values, first)
-    assert not children.operator.any()
-    state = emitter.tell(state, outcome_of(children.genotypes, np.zeros(SLOTS)))
-    _, state = emitted(emitter, state, archive(Vector(jnp.full(GENES, 0.3)), True))
-    np.testing.assert_allclose(state.theta, 0.3)
-
-
 def test_cma_mega_climbs_a_sphere(outcome_of):
     emitter, top = mega(step=0.2), np.linspace(-0.5, 0.5, GENES)
     state = emitter.init(key=KEYS[0])
@@ -98,58 +84,6 @@ def test_cma_mega_restarts_if_nothing_enters_and_stays_if_slopes_are_invalid(out
     assert emitter.tell(state, outcome).restart
 
 
-@pytest.fixture(scope="module")
-def lamarckian():
-    def newcomer(*, key):
-        return minimal(key, 3, 2, 12, 16)
-
-    varied = emitters.Neat(SLOTS, newcomer, neat.PRESETS["paper"].rates, 3)
-    return emitters.Lamarckian(varied, outputs=3, lessons=2, step=0.25)
-
-
-def test_a_lesson_is_one_step_of_the_given_length_up_the_requested_slope(lamarckian):
-    parent = minimal(jax.random.key(1), 3, 2, 12, 16)
-    children, state = emitted(lamarckian, lamarckian.init(key=KEYS[0]), archive(parent, True))
-    before = np.asarray(jax.vmap(genes_of)(children.genotypes))
-    rows = np.random.default_rng(1).normal(size=(SLOTS, 3, before.shape[1]))
-    finite = np.arange(SLOTS) != 2
-    slopes = search.Slopes(jnp.asarray(rows, jnp.float32), jnp.asarray(finite))
-    learnt, _ = jax.jit(lamarckian.learn)(state, children, slopes)
-    moved = np.asarray(jax.vmap(genes_of)(learnt.genotypes)) - before
-    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 0.25 * finite, atol=1e-4)
-    unit = rows / np.linalg.norm(rows, axis=2, keepdims=True)
-    direction = np.einsum("so,sog->sg", np.asarray(state.weights), unit)
-    gain = np.sum(moved * direction, 1)
-    assert (gain[finite] > 0).all()
-    numbers = (np.asarray(one.genotypes.innovation) for one in (learnt, children))
-    assert np.array_equal(*numbers)
-    assert {search.OPERATORS[i] for i in np.asarray(children.operator)} == {"lamarckian"}
-
-
-def test_both_are_learners_and_plain_neat_is_not(lamarckian):
-    assert isinstance(lamarckian, emitters.Learner)
-    assert isinstance(mega(), emitters.Learner)
-    assert not isinstance(lamarckian.neat, emitters.Learner)
-
-
-def test_no_measure_of_the_form_at_rest_has_a_slope():
-    assert set(FORMS) < set(WITHOUT_GRADIENT) < set(search.MEASURES)
-
-
-def test_the_first_step_is_as_long_as_the_rate_whatever_the_slope(float64):
-    slope = jnp.asarray([1e-3, -5.0, 200.0])
-    change, _ = folding.descend(folding.begin(slope), slope, 0.04)
-    np.testing.assert_allclose(change, [-0.04, 0.04, -0.04], rtol=1e-4)
-
-
-def test_a_slope_that_stays_is_followed_at_the_rate(float64):
-    slope, state = jnp.asarray([0.3]), folding.begin(jnp.zeros(1))
-    for _ in range(50):
-        change, state = folding.descend(state, slope, 0.1)
-        np.testing.assert_allclose(change, [-0.1], rtol=1e-6)
-    assert state.count == 50
-
-
 def test_means_are_those_of_the_paper(float64):
     slopes = np.random.default_rng(0).normal(size=(7, 4))
     state = folding.begin(jnp.zeros(4))
@@ -159,12 +93,3 @@ def test_means_are_those_of_the_paper(float64):
     mean = weights[0] @ slopes / weights[0].sum()
     square = weights[1] @ slopes**2 / weights[1].sum()
     np.testing.assert_allclose(change, -0.01 * mean / (np.sqrt(square) + 1e-8), rtol=1e-9)
-
-
-def test_adam_finds_the_minimum_of_an_ill_conditioned_square(float64):
-    scale, at = jnp.asarray([1.0, 100.0]), jnp.asarray([3.0, -2.0])
-    state = folding.begin(at)
-    for _ in range(800):
-        change, state = folding.descend(state, 2 * scale * at, 0.05)
-        at = at + change
-    assert np.abs(at).max() < 1e-2

@@ -5,12 +5,12 @@ taken once with `MICROCOSMOS_KERNEL=jax` and once with `native`. Small differenc
 (see `ROUNDING`). Rounding grows in some worlds; where the difference is larger, JAX in double
 precision tells how far single precision is off there, and the kernel may be off `GROWTH` times
 as far as the farthest of a few evaluations by JAX, whose numbers differ by rounding. Both paths
-agree on which worlds blow up; they need not agree on how.
+agree on which worlds blow up; they need not agree on how. Where JAX itself is off by a cell,
+the steps before are compared.
 """
 
 import os
-from collections import Counter
-from functools import cache, partial
+from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -37,27 +37,24 @@ pytest.importorskip(
 SEEDS = range(200)
 ALL = "MICROCOSMOS_TEST_ALL_SPECS"
 """Variable; where it is set, all seeds are computed, see `make acceptance PARTS=specs`."""
-COVERING = (
-    *(0, 1, 4, 5, 8, 14, 18, 29, 30, 34, 40, 46, 48, 54, 61, 63, 73, 93, 95, 96, 133, 141),
-    *(167, 170, 187),
-)
+COVERING = (*(0, 1, 2, 7, 14, 21, 27, 28, 40, 43, 47, 58, 65, 70, 103, 120, 133, 136, 181),)
 """Seeds whose specs together have every value of every field, chosen greedily."""
-QUICK = range(2)
+QUICK = (0,)
 """Seeds of `make test`."""
 
 LACKING = {spec.Fold: "does not cover this controller in closed loop"}
 """Controllers that the kernel lacks, and the reason that it gives."""
 
 UNUSED = {
+    "PluginVersion.emits": "no emitter is part of a scene",
     "PluginVersion.settings": "a plug-in without settings moves alike",
     "PluginVersion.unit": "a unit moves nothing",
+    "Scene.measures": "measures move nothing",
     "Scene.plugins": "measures of plug-ins move nothing",
     "Task.plugin": "the fitness moves nothing",
 }
 """Fields that are not drawn, and why."""
 
-ALIKE = {"Graph.nodes", "PluginControl.encoding"}
-"""Fields with one value: of a graph the edges vary, and there is one encoding of a plug-in."""
 
 STEPS = (1, 10, 100)
 ROUNDING = {1: 4, 10: 8, 100: 32}
@@ -114,8 +111,8 @@ def motion(task, actuator):
     end, observed = search.simulate(driven)
     found = {name: getattr(observed, name) for name in OBSERVED}
     found |= {
-        "rest angle": among(observed.rest.angle, world.joints_there(driven.world)),
-        "rest length": among(observed.rest.length, world.edges_there(driven.world)),
+        "rest angle": among(observed.rest.angle, world.present_joints(driven.world)),
+        "rest length": among(observed.rest.length, world.present_edges(driven.world)),
     }
     found |= {"clock": clock_of(driven, len(observed.power))}
     last = {"flow": jnp.stack(end.populations), "energy": end.energy}
@@ -158,6 +155,23 @@ def diverged(found, at):
     return not np.isfinite(found["positions"][: at[1]]).all()
 
 
+def sound(results, steps):
+    """Return results up to a step."""
+    return [
+        {name: numbers if numbers is None else numbers[:steps] for name, numbers in one.items()}
+        if steps < len(one["positions"])
+        else one
+        for one in results
+    ]
+
+
+def steps_kept(found, exact):
+    """Return the number of steps before rounding has moved a node by over a cell."""
+    off = np.abs(found["positions"] - exact["positions"])
+    lost = ~(off <= 1).all(axis=tuple(range(1, off.ndim)))
+    return int(lost.argmax()) if lost.any() else len(lost)
+
+
 def disagreements(found, expected, in_double_precision, rounded):
     """Return the quantities and steps whose difference rounding does not explain.
 
@@ -173,11 +187,15 @@ def disagreements(found, expected, in_double_precision, rounded):
     if not beyond:
         return []
     exact = in_double_precision()
+    kept = steps_kept(expected, exact)
+    found, expected, exact = sound((found, expected, exact), kept)
+    if kept < STEPS[-1]:
+        beyond = [at for at in beyond if at[0] not in END]
     ours, theirs = apart(found, exact), apart(expected, exact)
     left = [at for at in beyond if not ours[at] <= GROWTH * theirs[at]]
     if not left:
         return []
-    others = [apart(sample, exact) for sample in rounded()]
+    others = [apart(sample, exact) for sample in sound(rounded(), kept)]
     return [at for at in left if not ours[at] <= GROWTH * max(other[at] for other in others)]
 
 
@@ -203,88 +221,7 @@ def test_the_kernel_finds_what_jax_finds(seed, simulated):
     assert np.abs(found["held"] - expected["held"]).mean() <= 0.03
 
 
-COEFFICIENTS = {
-    "viscosity": ("_parameters", 0),
-    "strength of actuators": ("_parameters", 1),
-    "rate of energy": ("_parameters", 2),
-    "diffusion of energy": ("_parameters", 3),
-    "limit of displacement": ("_parameters", 4),
-    "limit of force": ("_parameters", 5),
-    "force per error": ("_parameters", 6),
-    "feedback of angles": ("_parameters", 7),
-    "strength of repulsion": ("_parameters", 8),
-    "limit of repulsion": ("_parameters", 9),
-    "scale of angles": ("_bounds", 0),
-    "scale of lengths": ("_bounds", 1),
-    "phase": ("_bounds", 2),
-    "speed of actuators": ("_bounds", 3),
-    "share of lag": ("_bounds", 4),
-    "bend of actuators": ("_bounds", 5),
-}
-"""Where the kernel gets numbers from: a function, and the place in what it returns."""
-TELLING = (0, 1, 8, 15)
-"""Seeds of specs that notice every wrong coefficient; all others are tried after these."""
-
-
-@pytest.mark.long
-def test_a_coefficient_that_is_off_by_a_hundredth_is_noticed(simulated, monkeypatch):
-    """In one of the specs, for each coefficient."""
-    left = dict(COEFFICIENTS)
-    for seed in (*TELLING, *SEEDS):
-        creature = creature_of(seed)
-        if not left or type(creature.scene.control) in LACKING:
-            continue
-        expected = simulated(creature, "jax")
-        in_double = cache(partial(exact, creature, simulated))
-        rounded = cache(partial(samples, creature, simulated))
-        for name, (function, place) in list(left.items()):
-            with monkeypatch.context() as patch:
-                off(patch, function, place)
-                found = simulated(creature, "native")
-            if disagreements(found, expected, in_double, rounded):
-                del left[name]
-    assert not left
-
-
-def off(patch, function, place):
-    """Have the kernel get a wrong number."""
-    module = world.native if function == "_parameters" else world.operands
-    right = getattr(module, function)
-    patch.setattr(module, function, lambda given: right(given).at[place].multiply(1.01))
-
-
 @pytest.mark.fast
 def test_every_field_of_a_scene_is_drawn():
     scenes = [spec_draws.any_scene(seed) for seed in COVERING]
     assert not spec_cases.lacking_in(scenes, UNUSED)
-
-
-@pytest.mark.fast
-def test_a_new_field_is_drawn_or_asked_for():
-    class Deeper(spec.World):
-        murky: bool = False
-        depth: float = 1.0
-
-    with pytest.raises(KeyError, match=r"Deeper\.depth"):
-        spec_draws.drawn(Deeper, np.random.default_rng(0))
-    drawn = {spec_draws.choice(Deeper, "murky", np.random.default_rng(n)) for n in range(9)}
-    assert drawn == {False, True}
-
-
-@pytest.mark.fast
-def test_every_number_of_a_scene_varies():
-    values = {field: set() for field in spec_draws.NUMBERS}
-    for seed in SEEDS:
-        for part in spec_cases.parts_of(spec_draws.any_scene(seed)):
-            for name in type(part).model_fields:
-                field = f"{spec_cases.owner(type(part), name)}.{name}"
-                if field in values:
-                    values[field].add(repr(getattr(part, name)))
-    few = {field: found for field, found in values.items() if len(found) < 2}
-    assert few.keys() == ALIKE
-
-
-@pytest.mark.fast
-def test_what_the_kernel_lacks_is_seldom_drawn():
-    drawn = Counter(type(spec_draws.any_scene(seed).control) for seed in SEEDS)
-    assert 0 < sum(drawn[kind] for kind in LACKING) <= len(SEEDS) / 10

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 import pytest
 
 from microcosmos import genomes, neat, search
@@ -113,31 +112,3 @@ def test_each_new_number_is_given_to_a_gene_and_none_is_skipped(history):
         assert {number for _, number in split} == set(range(before.node, after.node))
     assert history[0][1].innovation == history[0][2].innovation
     assert history[-1][2].node > INPUTS + OUTPUTS + 10
-
-
-def test_newcomers_beside_growing_networks_have_the_first_numbers(history):
-    for children, *_ in history:
-        for slot in range(SLOTS, 2 * SLOTS):
-            numbers = links(genomes.take(children.genotypes, slot)).values()
-            assert sorted(numbers) == list(range(INPUTS * OUTPUTS))
-
-
-def test_a_population_is_divided_by_the_numbers_that_its_children_got(history):
-    measure = jax.jit(
-        jax.vmap(
-            jax.vmap(lambda a, b: neat.distance(a, b, SETTINGS.coefficients), (None, 0)),
-            (0, None),
-        )
-    )
-    for children, _, _, population in history:
-        mine = jax.tree.map(lambda x: x[2 * SLOTS :], children.genotypes)
-        jax.tree.map(np.testing.assert_array_equal, population.networks, mine)
-        species = population.species
-        assert 0 < species.alive.sum() < SETTINGS.max_species
-        fits = np.asarray(measure(mine, species.representatives)) < species.threshold
-        first = np.argmax(fits & species.alive[None], 1)
-        np.testing.assert_array_equal(species.of, first)
-        rows = np.bincount(first, minlength=len(species.alive))
-        alive = zip(species.number, rows, strict=True)
-        assert population.sizes() == {n: count for n, count in alive if count}
-    assert len(history[-1][3].sizes()) > 2

@@ -2,15 +2,21 @@
 
 import importlib
 import importlib.util
+from dataclasses import replace
 from pathlib import Path
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from small_spec import SMALL_RUN
 
+import microcosmos
 from microcosmos import genomes, neat, search
+from microcosmos.build.encodings import build_encoding
+from microcosmos.invalid import InvalidField
 from microcosmos.search import qdax
+from microcosmos.units import MAX_LIMITED
 
 pytestmark = [
     pytest.mark.long,
@@ -56,90 +62,92 @@ def test_a_repertoire_there_and_back_loses_nothing(cells):
     assert same(qdax.from_repertoire(repertoire, cells, 3), archive)
 
 
-@pytest.mark.parametrize("cells", GRIDS, ids=["1-d", "2-d", "3-d"])
-def test_our_grids_are_in_the_order_of_theirs(cells):
-    repertoires = qdax.require_qdax("core.containers.mapelites_repertoire")
-    shape = tuple(axis.bins for axis in cells.axes)
-    theirs = repertoires.compute_euclidean_centroids(shape, 0.0, 1.0)
-    repertoire = qdax.to_repertoire(filled(cells), cells)
-    np.testing.assert_allclose(repertoire.centroids, theirs, atol=1e-6)
-    there = np.isfinite(repertoire.fitnesses[:, 0])
-    index = repertoires.get_cells_indices(repertoire.descriptors, repertoire.centroids)
-    assert np.array_equal(np.asarray(index)[there], np.flatnonzero(there))
+def test_a_repertoire_over_other_cells_is_refused():
+    two, four = (
+        search.Grid(tuple(search.Axis(i, 0.0, 1.0, bins) for i in range(2))) for bins in (2, 4)
+    )
+    whole = qdax.to_repertoire(filled(four), four)
+    with pytest.raises(InvalidField, match=r"must have one fitness in each of 4 cells"):
+        qdax.from_repertoire(whole, two, 3)
+    shifted = whole.replace(centroids=whole.centroids + 0.01)
+    with pytest.raises(InvalidField, match="must have the centroids of `cells`"):
+        qdax.from_repertoire(shifted, four, 3)
+    fronts = whole.replace(fitnesses=jnp.zeros((16, 5, 2)))
+    with pytest.raises(
+        InvalidField, match=r"one fitness in each of 16 cells; got \(16, 5, 2\)"
+    ):
+        qdax.from_repertoire(fronts, four, 3)
 
 
-def test_measures_of_their_own_elites_are_made_from_descriptors():
-    repertoire = qdax.to_repertoire(filled(AROUND), AROUND).replace(extra_scores={})
-    back = qdax.from_repertoire(repertoire, AROUND, 3)
-    there = np.asarray(back.occupied)
-    expected = filled(AROUND).measures[there]
-    np.testing.assert_allclose(back.measures[there][:, :2], expected[:, :2], rtol=1e-5)
-    assert np.isnan(back.measures[there][:, 2]).all()
+FULL = np.linspace(0.125, 0.875, 4)
+"""Middles of four bins."""
 
 
-def evaluated(genotypes):
-    """A stand-in for simulation: some of it diverges."""
-    x = genotypes.values
-    measures = jnp.stack([x[:, 0], 10 ** x[:, 1], 1 + x[:, 2]], 1)
-    status = jnp.where(x[:, 3] > 0.8, 1, 0)
-    measures = jnp.where(status[:, None] == 1, jnp.nan, measures)
-    fitness = jnp.where(status == 1, jnp.nan, -jnp.sum(x * x, 1))
-    return search.Evaluation(fitness, measures, status)
+@pytest.mark.parametrize(
+    ("field", "changed", "got"),
+    [
+        ("descriptors", lambda one: one.descriptors[:, :1], r"shape \(16, 2\); got \(16, 1\)"),
+        ("descriptors", lambda one: one.descriptors[:4], r"got \(4, 2\)"),
+        (
+            "descriptors",
+            lambda one: one.descriptors.at[3].set(jnp.nan),
+            "finite.* got 1 others",
+        ),
+        ("descriptors", lambda one: one.descriptors[::-1], "own cell; got 16 others"),
+        ("genotypes", lambda one: one.genotypes[:4], "must have 16 rows"),
+        ("genotypes", lambda one: one.genotypes.at[2, 1].set(jnp.nan), "-1 to 1; got 1 others"),
+        ("genotypes", lambda one: one.genotypes.at[2:5, 1].set(1.5), "-1 to 1; got 3 others"),
+        ("fitnesses", lambda one: one.fitnesses.at[1].set(jnp.inf), "finite.* got 1 others"),
+        ("measures", lambda one: one.extra_scores["measures"][:, :1], r"got \(16, 1\)"),
+        ("measures", lambda one: one.extra_scores["measures"][::-1], "own cell; got 16 others"),
+        ("slot", lambda one: one.extra_scores["slot"][:4], r"got \(4,\)"),
+    ],
+)
+def test_elites_that_no_archive_of_ours_has_are_refused(field, changed, got):
+    cells = search.Grid(tuple(search.Axis(i, 0.0, 1.0, 4) for i in range(2)))
+    middles = jnp.asarray(np.stack(np.meshgrid(FULL, FULL, indexing="ij"), -1).reshape(16, 2))
+    rows = search.candidates(
+        1,
+        genomes.Vector(jnp.zeros((16, 3), jnp.float32)),
+        jnp.arange(16.0),
+        middles.astype(jnp.float32),
+        jnp.ones(16, bool),
+    )
+    nobody = search.no_elites(16, 2, genomes.Vector(jnp.zeros(3)))
+    archive = search.insert(nobody, rows, cells)[0]
+    whole = qdax.to_repertoire(replace(archive, genotypes=rows.genotypes), cells)
+    assert np.isfinite(whole.fitnesses).all()
+    with pytest.raises(InvalidField, match="`measures` must be a whole number, at least 2"):
+        qdax.from_repertoire(whole, cells, 1)
+    if field in whole.extra_scores:
+        wrong = whole.replace(extra_scores={**whole.extra_scores, field: changed(whole)})
+    else:
+        wrong = whole.replace(**{field: changed(whole)})
+    with pytest.raises(InvalidField, match=f"{field}` .*{got}"):
+        qdax.from_repertoire(wrong, cells, 2)
 
 
-def test_their_map_elites_runs_on_our_scores_and_what_is_infeasible_never_enters():
-    names = ("core.map_elites", "core.emitters.standard_emitters")
-    loop, emitters = map(qdax.require_qdax, names)
-    score = qdax.scoring_function(evaluated, AROUND)
-
-    def mutate(x, key):
-        return x + 0.3 * jax.random.normal(key, x.shape)
-
-    mix = emitters.MixingEmitter(mutate, None, 0.0, 32)
-    run = loop.MAPElites(score, mix, lambda repertoire: {})
-    first = jax.random.uniform(jax.random.PRNGKey(0), (32, 5), minval=-1.0, maxval=1.0)
-    repertoire, state, _ = run.init(first, AROUND.centroids, jax.random.PRNGKey(1))
-    before = repertoire.fitnesses
-    for number in range(5):
-        repertoire, state, _ = run.update(repertoire, state, jax.random.PRNGKey(number))
-    there = np.isfinite(repertoire.fitnesses[:, 0])
-    assert np.all(repertoire.fitnesses >= before)
-    assert there.sum() > 6
-    assert np.isfinite(repertoire.descriptors).all()
-    assert np.all(np.asarray(repertoire.genotypes)[there][:, 3] <= 0.8)
+@pytest.mark.parametrize("kind", ["fronts", "dominated-novelty", "learned"])
+def test_an_archive_without_an_elite_in_each_cell_is_no_repertoire(kind, tmp_path):
+    archive = {"container": {"kind": kind}}
+    microcosmos.evolve(microcosmos.parse(SMALL_RUN | {"archive": archive}), tmp_path / "a.h5")
+    with pytest.raises(InvalidField, match=r"`archive\.container` must keep one elite"):
+        microcosmos.to_repertoire(tmp_path / "a.h5")
 
 
-def looped(generations, emitter, archive, state, begin=0):
-    counters = neat.first_counters(1, 1)
-    for number in map(jnp.asarray, range(begin, begin + generations)):
-        given = ((emitter,), (state,), archive, counters, number)
-        children, (state,), _ = search.emitters.emit(*given, key=jax.random.key(5))
-        found = evaluated(children.genotypes)
-        columns = (found.fitness, found.measures, found.status == 0)
-        rows = search.candidates(number, children.genotypes, *columns)
-        archive, inserted = search.insert(archive, rows, AROUND)
-        state = emitter.tell(state, search.emitters.outcome(rows, inserted))
-    return archive, state
-
-
-def newcomer(*, key):
-    return genomes.Vector(jax.random.uniform(key, (5,), minval=-1.0, maxval=1.0))
-
-
-def test_cma_me_climbs_in_our_loop_and_goes_on_from_kept_arrays():
-    emitter = qdax.cma_me(16, newcomer, AROUND, step=0.3, emitters=2)
-    nobody = search.no_elites(12, 3, genomes.Vector(jnp.zeros(5)))
-    start = emitter.init(key=jax.random.key(0))
-    assert all(isinstance(x, jax.Array) and x.dtype != object for x in jax.tree.leaves(start))
-    early, kept = looped(3, emitter, nobody, start)
-    whole, state = looped(6, emitter, early, kept, begin=3)
-    again = jax.tree.map(lambda x: jnp.asarray(np.array(x)), kept)
-    assert same(looped(6, emitter, early, again, begin=3), (whole, state))
-    assert jax.tree.structure(state) == jax.tree.structure(start)
-    strategies = state.emitter.emitter_states.cmaes_state
-    assert all(np.isfinite(x).all() for x in jax.tree.leaves(strategies))
-    assert int(whole.occupied.sum()) >= int(early.occupied.sum())
-    assert np.all(whole.fitness[early.occupied] >= early.fitness[early.occupied])
+@pytest.mark.parametrize("feasible", [False, True])
+def test_scores_are_of_feasible_creatures_alone_where_the_search_asks_for_them(feasible):
+    emitters = [{"operator": "iso+line"}]
+    wild = {"control": {"encoding": "direct", "period": 20, "max_speed": None, "lag": 0.0}}
+    search_of = {"batch": 4, "emitters": emitters, "feasible": feasible}
+    spec = microcosmos.parse(SMALL_RUN | wild | {"search": search_of})
+    genes = build_encoding(spec.scene, (8, 8)).newcomer(key=jax.random.key(0)).values.shape[0]
+    ends = np.sign(np.random.default_rng(0).normal(size=(4, genes))).astype(np.float32)
+    rows = np.concatenate([ends, 0.01 * ends])
+    fitness, _, extra = jax.jit(microcosmos.scoring_function(spec))(rows)
+    limited = np.asarray(extra["measures"][:, search.MEASURES.index("limited")])
+    assert (limited[:4] > MAX_LIMITED).all()
+    np.testing.assert_array_equal(np.isfinite(fitness), [not feasible] * 4 + [True] * 4)
 
 
 def network_scores(networks, key=None):
@@ -178,15 +186,6 @@ def test_our_neat_grows_networks_in_their_map_elites_and_numbers_them_alike():
     assert all((np.diff(numbers) > 0).all() for numbers in rows)
 
 
-def test_without_qdax_the_error_names_the_command(monkeypatch):
-    def missing(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr(importlib, "import_module", missing)
-    with pytest.raises(ValueError, match=r'pip install "microcosmos\[qdax\]"'):
-        qdax.require_qdax("core.map_elites")
-
-
 @pytest.mark.parametrize("name", ["arm", "rastrigin"])
 def test_our_map_elites_reaches_the_score_of_theirs(name, monkeypatch):
     folder = Path(__file__).parents[3] / "engine" / "benchmarks"
@@ -197,7 +196,7 @@ def test_our_map_elites_reaches_the_score_of_theirs(name, monkeypatch):
     cells = functions.cells(128)
     monkeypatch.setattr(functions, "cells", lambda: cells)
     ours = [functions.ours(name, seed, 60, 64) for seed in range(3)]
-    theirs = [functions.theirs(name, seed, 60, 64) for seed in range(3)]
+    theirs = [functions.qdax(name, seed, 60, 64) for seed in range(3)]
     spread = max(np.ptp(ours), np.ptp(theirs), 0.01 * np.mean(theirs))
     assert abs(np.median(ours) - np.median(theirs)) <= 2 * spread
 

@@ -7,8 +7,8 @@ import pytest
 
 import microcosmos
 from microcosmos import build, search
+from microcosmos.build.peers import ribs_results
 from microcosmos.genomes import Vector
-from microcosmos.search.ribs import ribs_function
 
 AXES = (
     search.Axis(measure=1, low=1e-2, high=1e2, bins=3, logarithmic=True),
@@ -25,28 +25,24 @@ SPEC = {
 
 
 def test_what_is_infeasible_has_the_worst_objective_and_all_numbers_are_finite():
-    def evaluate(genotypes):
-        x = genotypes.values
-        status = jnp.asarray([0, 1, 0, 0])
-        fitness = jnp.where(jnp.arange(4) == 2, jnp.nan, x[:, 0])
-        measures = jnp.stack([x[:, 1], jnp.where(jnp.arange(4) == 3, jnp.nan, 1.0)], 1)
-        return search.Evaluation(fitness, measures, status)
-
-    function = ribs_function(evaluate, search.Grid(AXES), worst=-9.0)
-    objective, measures = function([[0.5, 0.0], [0.1, 0.0], [0.2, 0.0], [0.3, 0.0]])
+    fitness, status = jnp.asarray([0.5, 0.1, jnp.nan, 0.3]), jnp.asarray([0, 1, 0, 0])
+    measured = jnp.asarray([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0], [0.0, jnp.nan]])
+    results = search.Evaluation(fitness, measured, status)
+    objective, measures = ribs_results(results, AXES, -9.0)
     np.testing.assert_allclose(objective, [0.5, -9, -9, -9])
     np.testing.assert_allclose(measures, [[0.5, 0.5], [0, 0], [0, 0], [0, 0]])
-    objective, measures = function([[7.0, -3.0]] * 4)
-    assert objective[0] == 1
-    assert measures[0, 1] == 0
 
 
 def test_objectives_have_the_bits_of_our_own_evaluation():
     spec = microcosmos.parse(SPEC)
-    genes = build.build_plan(spec).genotype.values.shape[0]
+    run = build.build(spec)
+    genes = run.plan.genotype.values.shape[0]
     vectors = np.random.default_rng(0).uniform(-0.3, 0.3, (6, genes)).astype("f4")
-    objective, measures = microcosmos.ribs_function(spec, worst=-1.0)(vectors)
-    program = build.build(spec).programs.evaluate_block
+    function = microcosmos.ribs_function(spec, worst=-1.0)
+    objective, measures = function(vectors)
+    ends = np.sign(vectors)
+    np.testing.assert_array_equal(function(7 * ends)[0], function(ends)[0], "Beyond ±1.")
+    program = run.plan.evaluate.run
     genotypes = jax.device_get(Vector(jnp.asarray(vectors)))
     ours = search.judged(search.evaluate_blocks(program, genotypes, block=4))
     sound = ours.status == 0

@@ -6,12 +6,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from genotypes import any_genotype
 
 from microcosmos import search, spec
 from microcosmos.build import build_stroke, build_task
 from microcosmos.genomes import Drive
-from microcosmos.world import native
 
 STEPS, PERIOD = 400, 200
 BODY = {"builder": "worm"}
@@ -74,6 +72,17 @@ def test_mirror_images_stay_mirror_images():
         assert np.abs(one - other - [0, -14]).max() > 0.01
 
 
+@pytest.mark.parametrize("count", [2, 3])
+def test_the_middle_of_a_school_is_that_of_its_first_copy(count):
+    scene = gait(column(14, count), steps=10)
+    task, driven, end, seen = swum(scene)
+    middle = search.Measure("middle", lambda motion: motion.middle[-1, 1])
+    found = motion_of(replace(task, named_measures=(middle,)), driven, end, seen)
+    nodes = len(task.start.positions)
+    assert float(found["middle"]) == float(end.positions[nodes // 2, 1])
+    assert float(found["nodes"]) == count * nodes == task.copies * nodes
+
+
 @pytest.mark.long
 def test_far_copies_swim_like_one():
     """Four copies in four boxes side by side have the images that one has in its box."""
@@ -92,74 +101,6 @@ def test_far_copies_swim_like_one():
             np.testing.assert_allclose(school[name], alone[name], rtol=1e-6, atol=1e-9)
         for name in ("power", "nodes", "cost_of_transport"):
             np.testing.assert_allclose(school[name], 4 * alone[name], rtol=1e-6)
-
-
-@pytest.mark.long
-def test_neighbours_change_how_a_creature_swims():
-    _, _, end, _ = swum(gait(column(12)))
-    _, _, alone, _ = swum(gait())
-    one = np.asarray(end.positions)[: len(alone.positions)]
-    moved = np.abs(one - np.asarray(alone.positions) - [0, -6]).max()
-    assert 0.02 < moved < 5
-
-
-CASES = {
-    "matched": {},
-    "steric": {"steric": {}},
-    "energy": {"energy": {"packets": 3, "consume": True}},
-}
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", CASES)
-def test_the_kernel_simulates_a_school(name):
-    pytest.importorskip("microcosmos_kernels")
-    scene = gait(column(12, 3), steps=60, **CASES[name])
-    _, driven, end, seen = swum(scene)
-    found, observed = native.rollout(driven.world, driven.start, driven.inputs)
-    np.testing.assert_allclose(found.positions, end.positions, atol=2e-4)
-    np.testing.assert_allclose(observed.force, seen.force, atol=1e-5)
-
-
-CONTROLS = {
-    "network": {"encoding": "cppn"},
-    "recurrent network": {"encoding": "cppn", "recurrent": True},
-    "genes": {"encoding": "direct"},
-    "grown body": {"encoding": "cppn-body"},
-}
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", CONTROLS)
-def test_every_encoding_has_schools(name):
-    """The kernel, where there is one, measures what JAX does."""
-    scene = spec.Scene.model_validate(
-        {
-            "world": {"width": 32, "height": 40, "copies": column(12)},
-            "body": {"nodes": 10},
-            "control": {"period": 20, **CONTROLS[name]},
-            "task": {"steps": 60},
-        }
-    )
-    task = build_task(scene, room=(12, 20))
-    genotype = any_genotype(scene, task.encoding, np.random.default_rng(3))
-    found = jax.jit(lambda one: search.evaluate(task, one))(genotype)
-    assert found.status == 0
-    assert found.poses.positions.shape[1] == 20
-
-    @jax.jit
-    def in_jax(genotype):
-        driven = search.drive(task, genotype, differentiable=True)
-        given = search.simulate(driven, differentiable=True)
-        return driven.start.positions, search.motion_of(task, driven, *given)
-
-    start, values = jax.device_get(in_jax(genotype))
-    np.testing.assert_allclose(start[10:] - start[:10], [[0, 12]] * 10, atol=1e-5)
-    for measure in ("displacement", "symmetry", "nodes", "advance", "wave_number", "power"):
-        at = search.MEASURES.index(measure)
-        np.testing.assert_allclose(
-            found.measures[at], values[measure], rtol=0.02, atol=2e-4, err_msg=measure
-        )
 
 
 @pytest.mark.parametrize(

@@ -1,16 +1,17 @@
 """A search of your own: `ask` and `tell` on any evaluation function."""
 
 import re
+from fractions import Fraction
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import search
-from microcosmos.device import array
+from microcosmos import neat, search
 from microcosmos.genomes import Vector
 from microcosmos.search import emitters
+from microcosmos.search.qdax import QdaxEmitter
 
 BOUNDS = (-5.0, 15.0)
 SPACE = search.Vectors(4, *BOUNDS)
@@ -135,12 +136,6 @@ def test_what_is_not_finite_or_not_feasible_is_counted_and_never_enters():
     assert np.isfinite(loop.ask()).all()
 
 
-def test_an_empty_search_has_no_best_and_a_score_of_zero():
-    loop = on_vectors()
-    assert loop.best is None
-    assert (loop.qd_score, loop.coverage, len(loop.elites.cell)) == (0.0, 0.0, 0)
-
-
 def test_further_measures_are_recorded_beside_those_of_the_axes():
     axis = search.Axis(measure=1, low=0.0, high=1.0, bins=4)
     emitter = emitters.Random(6, SPACE)
@@ -151,6 +146,14 @@ def test_further_measures_are_recorded_beside_those_of_the_axes():
     assert loop.elites.fitness.tolist() == [1, 2, 4, 5]
     assert (loop.elites.measures[:, 2] == 7).all()
     assert loop.infeasible == 0
+
+
+NETWORKS, PAPER = search.Networks(2, 1), neat.PRESETS["paper"]
+OTHER = search.Grid(GRID.axes[::-1])
+
+
+def of_qdax(cells):
+    return QdaxEmitter(4, SPACE, cells, None, "cma-me")
 
 
 def outputs_at(points):
@@ -168,6 +171,22 @@ ASKED = np.zeros(20), np.zeros((20, 2))
         ((ASKED[0][:19], ASKED[1]), "`fitness` must have shape (20,), got (19,)"),
         ((ASKED[0], ASKED[1][:, :1]), "`measures` must have shape (20, 2), got (20, 1)"),
         ((*ASKED, [True]), "`feasible` must have shape (20,), got (1,)"),
+        *(
+            ((*ASKED, feasible), "`feasible` must be true or false, got")
+            for feasible in ([np.nan] * 20, ["False"] * 20, [-1, 2] * 10, [None] * 20)
+        ),
+        *(
+            ((fitness, ASKED[1]), "`fitness` must be real numbers, got")
+            for fitness in (
+                np.ma.array(ASKED[0], mask=True),
+                ASKED[0] + 3j,
+                np.full(20, "2020-01-01", "M8[D]"),
+                ["1"] * 20,
+                [10**400] * 20,
+                [Fraction(10**400)] * 20,
+            )
+        ),
+        ((ASKED[0], [[0.0]] * 19 + [[0.0, 1.0]]), "`measures` must have rows of one length"),
     ],
 )
 def test_outcomes_of_another_shape_are_refused_and_can_be_told_again(given, message):
@@ -176,6 +195,54 @@ def test_outcomes_of_another_shape_are_refused_and_can_be_told_again(given, mess
     with pytest.raises(ValueError, match=re.escape(message)):
         loop.tell(*given)
     loop.tell(*ASKED)
+    assert loop.generation == 1
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda x: (x[0], x[:1]),
+        lambda x: (x[0], x[0]),
+        lambda x: (x, x[:2]),
+        lambda x: x[0],
+        lambda x: (x[0] + 1j, x[:2]),
+    ],
+)
+def test_a_function_of_another_shape_is_refused(function):
+    loop = on_vectors()
+    with pytest.raises(ValueError, match="`function` must return a real fitness"):
+        loop.run(function, 1)
+    with pytest.raises(ValueError, match="`generations` must be a whole number, at least 0"):
+        loop.run(function, -1)
+    assert loop.generation == 0
+
+
+class Stopped(BaseException):
+    """As Ctrl-C during a compilation."""
+
+
+@pytest.mark.parametrize("moment", ["emit", "tell"])
+def test_a_generation_that_fails_is_asked_for_again(moment):
+    class Fails(emitters.IsoLine):
+        def emit(self, *given, **keys):
+            return fails("emit") or super().emit(*given, **keys)
+
+        def tell(self, *given):
+            return fails("tell") or super().tell(*given)
+
+    def fails(now):
+        if now == moment and not failed:
+            failed.append(now)
+            raise Stopped
+
+    failed = []
+    loop = search.Search(SPACE, GRID, [Fails(20, SPACE, 0.1)])
+    with pytest.raises(Stopped):
+        loop.tell(*evaluated(loop.ask()))
+    with pytest.raises(ValueError, match="`tell` must follow `ask`"):
+        loop.tell(*ASKED)
+    whole = search.Search(SPACE, GRID, [emitters.IsoLine(20, SPACE, 0.1)])
+    np.testing.assert_array_equal(advanced(loop, 1).ask(), advanced(whole, 1).ask())
     assert loop.generation == 1
 
 
@@ -208,18 +275,80 @@ def test_the_file_of_another_search_is_refused(other, message):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: search.Vectors(0), "`genes` must be at least 1, got 0"),
+        (lambda: search.Vectors(0), "`genes` must be a whole number, at least 1; got 0"),
         (lambda: search.Vectors(2, [0.0], 1.0), "`low` must be a finite number, or 2 of them"),
+        (lambda: search.Vectors(2, [[0.0], [0.0, 1.0]]), "`low` must have rows of one length"),
         (lambda: search.Vectors(2, 1.0, [2.0, 1.0]), "`low` must be below `high`"),
-        (lambda: search.Networks(2, 3, nodes=4), "`nodes` must be at least 5, got 4"),
+        (
+            lambda: search.Networks(2, 3, nodes=4),
+            "`nodes` must be .* at least 5; got 4",
+        ),
         (lambda: search.Search(SPACE, GRID, []), "`emitters` must hold at least one"),
+        *(
+            (
+                lambda seed=seed: search.Search(SPACE, GRID, vector_emitters(GRID), seed=seed),
+                "`seed`",
+            )
+            for seed in (-1, 2**32, 2**40)
+        ),
         (
             lambda: search.Search(SPACE, GRID, [emitters.CmaMega(4, SPACE, 3)]),
-            "`emitters` must do without derivatives .* CmaMega",
+            "`emitters` must do without derivatives, got CmaMega",
+        ),
+        *(
+            (
+                lambda emitter=emitter: search.Search(NETWORKS, GRID, [emitter]),
+                f"`emitters` must vary genotypes of .* got {name}, which varies vectors",
+            )
+            for name, emitter in {
+                "IsoLine": emitters.IsoLine(4, NETWORKS, 0.1),
+                "CmaMae": emitters.CmaMae(4, NETWORKS, 36, 0.2, 0.1, 0.0),
+            }.items()
+        ),
+        *(
+            (
+                lambda emitter=emitter: search.Search(SPACE, GRID, [emitter]),
+                f"`emitters` must vary genotypes of .* got {name}, which varies networks",
+            )
+            for name, emitter in {
+                "Neat": emitters.Neat(4, SPACE, PAPER.rates, 2),
+                "PopulationNeat": emitters.PopulationNeat(4, SPACE, PAPER, 2, 1),
+            }.items()
+        ),
+        (
+            lambda: search.Search(NETWORKS, GRID, [emitters.Neat(4, NETWORKS, PAPER.rates, 1)]),
+            "`emitters` must have the inputs of the search's space, 2; got Neat of 1",
+        ),
+        (
+            lambda: search.Search(
+                NETWORKS, GRID, [emitters.PopulationNeat(4, NETWORKS, PAPER, 2, 3)]
+            ),
+            "`emitters` must have the outputs of .*, 1; got PopulationNeat of 3",
+        ),
+        (
+            lambda: search.Search(SPACE, GRID, vector_emitters(AROUND)),
+            "`emitters` must learn from the 36 cells of the search; got CmaMae of 20 others",
+        ),
+        (
+            lambda: search.Search(SPACE, GRID, [of_qdax(OTHER)]),
+            "from the 36 cells of the search; got QdaxEmitter of 36 others",
+        ),
+        *(
+            (
+                lambda container=container: search.Search(
+                    SPACE, container, vector_emitters(GRID)
+                ),
+                f"`emitters` must not learn from cells with {type(container).__name__}",
+            )
+            for container in (
+                search.DominatedNovelty(GRID, size=36),
+                search.Fronts(GRID, search.Axis(1, 0.0, 1.0, 1), size=2),
+                search.learned_axes(GRID, (0, 1)),
+            )
         ),
         (
             lambda: search.Search(SPACE, GRID, vector_emitters(GRID), measures=1),
-            "`measures` must be at least 2, got 1",
+            "`measures` must be a whole number, at least 2; got 1",
         ),
         (
             lambda: outputs_at(np.zeros((4, 3))),
@@ -230,23 +359,3 @@ def test_the_file_of_another_search_is_refused(other, message):
 def test_arguments_that_do_not_fit_are_named(make, message):
     with pytest.raises(ValueError, match=message):
         make()
-
-
-def test_the_order_of_arrival_of_slots_does_not_matter():
-    """Candidates keep their slots; only rows of the batch change places."""
-    vectors = on_vectors().ask()
-    fitness, measures = evaluated(vectors)
-    fitness = np.round(fitness / 50) * 50  # Many are equal.
-    rows = search.candidates(
-        1,
-        Vector(array(vectors)),
-        *map(array, (fitness, measures)),
-        array(np.ones(20, bool)),
-    )
-    order = np.random.default_rng(1).permutation(20)
-    nobody = search.no_elites(GRID.count, 2, Vector(array(np.zeros(4))))
-    shuffled = jax.tree.map(lambda x: np.asarray(x)[order], rows)
-    insert = jax.jit(search.insert)
-    one, other = (insert(nobody, given, GRID)[0] for given in (rows, shuffled))
-    for a, b in zip(jax.tree.leaves(one), jax.tree.leaves(other), strict=True):
-        assert np.asarray(a).tobytes() == np.asarray(b).tobytes()

@@ -4,9 +4,7 @@ import jax
 import numpy as np
 import pytest
 
-import microcosmos
 from microcosmos import neat, search
-from microcosmos.build import build
 from microcosmos.search import emitters
 
 NETWORKS = search.Networks(inputs=2, outputs=1, nodes=8, connections=16)
@@ -50,44 +48,3 @@ def test_neat_learns_xor_with_the_same_bytes_after_a_restart(emitter, generation
     again = on_networks(emitter)
     again.restore(halfway)
     assert learn_xor(again, generations - 4).save() == loop.save()
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"control": {"encoding": "direct", "terms": 1, "period": 20}}
-        | {"search": {"emitters": [{"operator": "iso+line"}, {"operator": "cma-mae"}]}},
-        {"control": {"period": 20}, "search": {"emitters": [{"operator": "neat"}]}},
-    ],
-    ids=["vectors", "networks"],
-)
-def test_on_simulations_it_is_the_loop_of_an_experiment(changes):
-    batch = {"batch": 8, "block": 8, "generations": 4, "feasible": False}
-    small = {"world": {"width": 24, "height": 24}, "body": {"nodes": 6}, "task": {"steps": 60}}
-    chosen = {"experiment": "quality-diversity", "seed": 5, **small, **changes}
-    experiment = build(microcosmos.parse(chosen | {"search": batch | changes["search"]}))
-    plan, state = experiment.plan, experiment.init()
-
-    class Space:
-        counters = plan.counters
-
-        def __call__(self, *, key):
-            return plan.encoding.newcomer(key=key)
-
-        def decode(self, genotypes):
-            return genotypes
-
-    measures = len(plan.measures)
-    loop = search.Search(Space(), plan.container, plan.emitters, seed=5, measures=measures)
-    for _ in range(4):
-        state, _ = experiment.advance(state)
-        program = experiment.programs.evaluate_block
-        found = search.evaluate_blocks(program, loop.ask(), block=8)
-        loop.tell(found.fitness, found.measures, found.status == 0)
-    occupied = np.flatnonzero(state.elites.occupied)
-    assert loop.elites.cell.tolist() == occupied.tolist()
-    ours = jax.tree.leaves((loop.elites.fitness, loop.elites.genotypes))
-    theirs = jax.tree.leaves((state.elites.fitness, state.elites.genotypes))
-    for one, other in zip(ours, theirs, strict=True):
-        np.testing.assert_array_equal(one, np.asarray(other)[occupied])

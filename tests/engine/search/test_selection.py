@@ -10,7 +10,7 @@ import pytest
 from microcosmos import search
 from microcosmos.genomes import Vector
 from microcosmos.search import emitters
-from microcosmos.search.emitters.selection import draw
+from microcosmos.search.emitters.selection import draw, ends
 
 CELLS = 5
 ELITES = (4, 0, 2)
@@ -67,6 +67,23 @@ def test_curiosity_multiplies_the_chances_of_parents(elites):
     shares = shares_of(with_scores(elites, 3.0, 0.5, 1.0), "curiosity")
     expected = (1 / 6 + TOURNAMENTS / 2) * [3, 0.5, 1]
     np.testing.assert_allclose(shares, expected / expected.sum(), atol=0.03)
+
+
+@pytest.mark.parametrize("select", ["uniform", "mixed", "tournament", "curiosity"])
+def test_no_number_draws_an_empty_cell(select):
+    """A sum in another order rounds to other ends at some of so many empty cells."""
+    random, cells = np.random.default_rng(0), 4096
+    occupied = random.random(cells) < 0.3
+    sparse = replace(
+        search.no_elites(cells, 1, Vector(jnp.zeros(1))),
+        occupied=jnp.asarray(occupied),
+        fitness=jnp.asarray(random.random(cells), jnp.float32),
+        curiosity=jnp.asarray(0.05 + random.integers(0, 9, cells) / 2, jnp.float32),
+    )
+    found = jax.jit(ends, static_argnums=1)(sparse, select)
+    lengths = np.diff(found, prepend=0)
+    assert np.all(lengths >= 0)
+    assert np.all(lengths[~occupied] == 0)
 
 
 def test_an_empty_archive_gives_the_first_cell(elites):

@@ -13,7 +13,7 @@ from microcosmos import search, world
 from microcosmos.genomes import Drive
 from microcosmos.search.evaluation import poses_of, status
 from microcosmos.search.simulation import clock_of
-from microcosmos.search.summary import SUMMARISED, summarise
+from microcosmos.search.window import SUMMARISED, summarise
 
 kernels = pytest.importorskip(
     "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
@@ -57,18 +57,6 @@ QUICK = ("sweeps", "three bodies", "two nodes", "a body that has grown")
 )
 def test_measures_poses_and_status_are_those_of_jax(name):
     agree(moved(name), 33.3)
-
-
-@pytest.mark.parametrize(
-    "period",
-    [
-        pytest.param(None, id="no strokes"),
-        pytest.param(50.0, id="two, from the start"),
-        pytest.param(70.0, id="one, and a part"),
-    ],
-)
-def test_any_number_of_strokes_is_measured(period):
-    agree(moved("sweeps"), period)
 
 
 def agree(scene, period):

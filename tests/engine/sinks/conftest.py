@@ -1,5 +1,9 @@
 """A small run with all sinks, and attempts at a run that crashes."""
 
+import os
+import signal
+import time
+
 import pytest
 from few_reports import report_of
 from small_spec import SMALL_RUN
@@ -7,9 +11,8 @@ from small_spec import SMALL_RUN
 from microcosmos import spec
 from microcosmos.build.local import evolve
 from microcosmos.sinks import delivery
-from microcosmos.sinks.address import parse
+from microcosmos.sinks.address import Record, parse
 from microcosmos.sinks.delivery import Sinks
-from microcosmos.sinks.record import Record
 
 SPEC = spec.parse(SMALL_RUN)
 
@@ -62,16 +65,34 @@ def wandb_folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+def attempt(address, start, stop, *, killed=False):
+    """Report the steps after `start`; kill the processes of the sink once it has them all."""
+    record = Record("run-1", "A run", {"seed": 3, "world": {"width": 24}}, start)
+    with Sinks([parse(address)], record) as sinks:
+        (feed,) = sinks._feeds
+        for step in range(start + 1, stop + 1):
+            sinks.report(report_of(step, qd_score=step + start / 8))
+        if not killed:
+            sinks.close(stop, {"best.json": b"{}"}, done=stop == 8)
+            return
+        until = time.monotonic() + 60
+        while feed._delivered < stop - start:
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        os.killpg(feed._process.pid, signal.SIGKILL)
+
+
+@pytest.fixture(name="attempt")
+def attempt_fixture():
+    return attempt
+
+
 @pytest.fixture
 def attempts():
     """Report to a sink twice: up to generation 6, and after a crash again from 5 to 8."""
 
     def report(address):
-        for start, stop in ((0, 6), (4, 8)):
-            record = Record("run-1", "A run", {"seed": 3, "world": {"width": 24}}, start)
-            with Sinks([parse(address)], record) as sinks:
-                for step in range(start + 1, stop + 1):
-                    sinks.report(report_of(step, qd_score=step + start / 8))
-                sinks.close(stop, {"best.json": b"{}"}, done=stop == 8)
+        attempt(address, 0, 6)
+        attempt(address, 4, 8)
 
     return report

@@ -1,18 +1,21 @@
 """A sink that hangs, fails or is full changes nothing about a run, and is named once."""
 
+import io
+import json
 import logging
 import sys
 import time
+from unittest.mock import Mock, call
 
 import pytest
 from few_reports import report_of
 from small_spec import SMALL_RUN
 
 from microcosmos import spec
+from microcosmos.archive.file import HDF5
 from microcosmos.build.local import evolve
-from microcosmos.sinks import delivery
-from microcosmos.sinks.address import parse, parse_all
-from microcosmos.sinks.record import Record, of_file
+from microcosmos.sinks import delivery, process
+from microcosmos.sinks.address import Message, Record, of_file, parse, parse_all
 
 SPEC = spec.parse(SMALL_RUN)
 RECORD = Record("run-1", "A run", {"seed": 3})
@@ -21,7 +24,7 @@ ADDRESS = parse("tensorboard:runs")
 PROCESS = """
 import os, signal, sys, time
 signal.alarm(100)  # As `process.main` does at the end of its run.
-from microcosmos.sinks import messages, process
+from microcosmos.sinks import process
 
 class Broken:
     def __init__(self, opening):
@@ -39,6 +42,22 @@ class Broken:
     reports = picture = file = close = _fail
 
 process.open_sink = Broken
+process.main(lambda data: None)
+"""
+LATE = """
+import pathlib, time
+from microcosmos.sinks import process
+process.LINGER = 1
+
+class Late:
+    def reports(self, reports):
+        pathlib.Path({begun!r}).touch()
+        time.sleep(100)
+
+    def close(self, done):
+        pathlib.Path({ended!r}).write_text(str(done))
+
+process.open_sink = lambda opening: Late()
 process.main(lambda data: None)
 """
 HANGS = "import signal, time; signal.alarm(100); time.sleep(600)"
@@ -75,6 +94,35 @@ def test_the_archive_has_the_same_bytes_whatever_sinks_do(plain, instead, tmp_pa
         assert reason in warning
 
 
+def test_no_curve_has_the_name_of_a_group():
+    summary = {"infeasible.non-finite": 2, "loss": 0.5, "loss.ring": 0.25}
+    summary |= {"emitter.iso.children": 8, "slopes.length": 3.0, "length": 0.2}
+    found = delivery.numbers(report_of(1, summary=summary))
+    assert found == {
+        "evaluations": 8,
+        "infeasible": 0,
+        "infeasible_by/non-finite": 2,
+        "qd_score": 1.5,
+        "loss": 0.5,
+        "loss_by/ring": 0.25,
+        "length": 0.2,
+        "slopes/length": 3.0,
+        "emitter/iso/children": 8,
+    }
+    assert not [name for name in found for other in found if other.startswith(f"{name}/")]
+
+
+@pytest.mark.parametrize(("data", "pictures"), [(HDF5 + b"...", 1), (b"{}", 0)])
+@pytest.mark.parametrize("name", ["run", "run.hdf5", "run.h5", "best.json"])
+def test_the_archive_is_drawn_at_the_end_whatever_its_name(name, data, pictures):
+    sink, answers = Mock(), io.StringIO()
+    message = Message({"kind": "file", "name": name, "step": 4}, data)
+    process.Deliveries(sink, answers, lambda archive: b"PNG").take([message])
+    assert sink.picture.mock_calls == [call(4, b"PNG")] * pictures
+    sink.file.assert_called_once_with(name, data)
+    assert json.loads(answers.getvalue())["delivered"] == 1
+
+
 def test_a_program_that_cannot_start_is_no_failure(monkeypatch, caplog):
     monkeypatch.setattr(delivery, "COMMAND", ("/nonexistent/python",))
     with delivery.Sinks([ADDRESS], RECORD) as sinks:
@@ -106,6 +154,29 @@ def test_a_full_queue_drops_and_never_waits(instead, monkeypatch, caplog):
     assert "20,001 of 20,001 messages are not delivered" in caplog.text
 
 
+@pytest.mark.parametrize("reports", [1, 1000])
+def test_a_record_is_ended_where_the_time_for_its_backlog_runs_out(
+    instead, monkeypatch, tmp_path, reports
+):
+    """Of many reports most wait in the pipe, so that the process has not read the end."""
+    begun, ended = tmp_path / "begun", tmp_path / "ended"
+    instead(LATE.format(begun=str(begun), ended=str(ended)), patience=0.0)
+    if reports > process.WAITING:
+        monkeypatch.setattr(delivery, "LINGER", 1)
+        monkeypatch.setattr(delivery, "LAST", 0)
+    with delivery.Sinks([ADDRESS], RECORD) as sinks:
+        (feed,) = sinks._feeds
+        for step in range(reports):
+            sinks.report(report_of(step))
+        until = time.monotonic() + 60
+        while not begun.exists():
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        sinks.close(1, {}, done=True)
+    assert feed._process.wait(60) == 0
+    assert ended.read_text() == "True"
+
+
 def wait_until_taken(feed):
     end = time.monotonic() + 60
     while feed._queue.qsize():
@@ -135,7 +206,7 @@ def test_pictures_go_on_after_one_found_a_full_queue(tmp_path, instead, monkeypa
 
 SLOW = """
 import pathlib, signal, sys, time
-from microcosmos.sinks.messages import receive
+from microcosmos.sinks.address import receive
 signal.alarm(100)
 while not pathlib.Path({gate!r}).exists():
     time.sleep(0.01)
@@ -144,25 +215,6 @@ while message := receive(sys.stdin.buffer):
     kinds.append(message.kind)
 pathlib.Path({seen!r}).write_text(" ".join(kinds))
 """
-
-
-def test_pictures_keep_their_distance(instead, monkeypatch, caplog):
-    monkeypatch.setattr(delivery, "PICTURE_SECONDS", 0.0)
-    instead(HANGS)
-    with delivery.Sinks([ADDRESS], RECORD) as sinks:
-        sinks.checkpoint(1, b"archive")
-        monkeypatch.setattr(delivery, "PICTURE_SECONDS", 600.0)
-        sinks.checkpoint(2, b"archive")
-        sinks.close(2, {}, done=True)
-    assert "1 of 1 messages are not delivered" in caplog.text
-
-
-def test_numbers_are_finite_and_grouped():
-    report = report_of(3, best=float("nan"), summary={"neat: inserted": 4, "ended": "soon"})
-    found = delivery.numbers(report)
-    assert found["neat/inserted"] == 4
-    assert "best" not in found
-    assert "ended" not in found
 
 
 @pytest.mark.parametrize("text", ["tensorboard", "tensorboard:", "csv:file", "runs"])

@@ -1,54 +1,113 @@
-"""MLflow's own client finds one run with each step once."""
+"""A name that MLflow refuses loses one value, and the sink says so."""
 
+import logging
+import sys
 from pathlib import Path
 
 import mlflow
-import numpy as np
 import pytest
+from few_reports import report_of
 
-from microcosmos.archive.file import load
+from microcosmos.sinks import delivery
+from microcosmos.sinks.address import Record, Refused, parse
+from microcosmos.sinks.mlflow import MLflow
 
 pytestmark = pytest.mark.filterwarnings("ignore")
+RECORD = Record("run-1", "A run", {"seed": 3})
+SPEC = {"world": {"width": 24}, "settings": {"speed (µm/s)": 3, "a//b": 4}}
 
 
-@pytest.fixture
-def address(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)  # MLflow keeps files of a database beside the process.
-    return f"sqlite:///{tmp_path / 'mlflow.db'}"
+@pytest.fixture(scope="module")
+def target(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mlflow")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)  # Artifacts lie beside the process.
+        yield f"sqlite:///{folder / 'mlflow.db'}"
 
 
-def only_run(address):
-    client = mlflow.MlflowClient(address)
-    place = client.get_experiment_by_name("microcosmos").experiment_id
-    (run,) = client.search_runs([place])
-    return client, run
+def recorded(target, name):
+    """The client, a run, and a function that returns the points of a metric."""
+    client = mlflow.MlflowClient(target)
+    place = client.get_experiment_by_name("microcosmos")
+    (run,) = client.search_runs([place.experiment_id], f"attributes.run_name = '{name}'")
+
+    def points(name):
+        history = client.get_metric_history(run.info.run_id, name)
+        return sorted((one.step, one.value) for one in history)
+
+    return client, run, points
 
 
-@pytest.mark.long
-def test_curves_pictures_and_files_of_a_run(plain, follow, address, tmp_path):
-    path = follow(tmp_path, f"mlflow:{address}") / "run.h5"
-    assert path.read_bytes() == plain.read_bytes()
-    client, run = only_run(address)
-    assert run.info.status == "FINISHED"
+def test_names_and_texts_are_written_as_mlflow_takes_them_and_the_rest_is_named(target):
+    spec = SPEC | {"a+b": 1, "a_b": 2, "long": "x" * 7000}
+    sink = MLflow(target, Record("run-1", "Names", spec))
+    values = {"evaluations": 8.0, "emitter/iso+line/inserted": 3.0, "a//b": 1.0, "best": 0.5}
+    values["emitter/iso_line/inserted"] = 4.0
+    with pytest.raises(Refused) as refused:
+        sink.reports([(1, values), (2, values)])
+    assert refused.value.reasons.keys() == {
+        *("settings.a//b", "a//b", "a_b", "long", "emitter/iso_line/inserted")
+    }
+    assert refused.value.reasons["long"] == "all but the first 6,000 characters"
+    _, run, points = recorded(target, "Names")
+    assert run.data.params["settings.speed __m/s_"] == "3"
     assert run.data.params["world.width"] == "24"
-    curves = load(path.read_bytes())[0]["curves"]
-    for name in ("qd_score", "coverage", "best", "evaluations"):
-        found = client.get_metric_history(run.info.run_id, name)
-        assert [one.step for one in found] == [1, 2, 3, 4]
-        np.testing.assert_array_equal([one.value for one in found], curves[name])
-    named = {one.path for one in client.list_artifacts(run.info.run_id)}
-    assert named == {"run.h5", "run.best.json", "pictures"}
-    local = client.download_artifacts(run.info.run_id, "run.h5", str(tmp_path / "mlruns"))
-    assert Path(local).read_bytes() == path.read_bytes()
+    assert run.data.params["a_b"] == "1"
+    assert run.data.params["long"] == "x" * 6000
+    for name, value in (("emitter/iso_line/inserted", 3.0), ("best", 0.5)):
+        assert points(name) == [(1, value), (2, value)]
 
 
-@pytest.mark.long
-def test_a_resumed_run_goes_on_in_its_record_without_double_steps(attempts, address):
-    attempts(f"mlflow:{address}")
-    client, run = only_run(address)
-    assert run.info.status == "FINISHED"
-    found = client.get_metric_history(run.info.run_id, "qd_score")
-    assert [(one.step, one.value) for one in found] == [
-        *((step, step) for step in range(1, 7)),
-        *((step, step + 0.5) for step in (7, 8)),
+def test_a_process_that_lives_on_leaves_the_newest_attempt_alone(target):
+    def reports(first, last, offset):
+        return [(step, {"evaluations": step + offset}) for step in range(first, last + 1)]
+
+    old, newer, newest = (
+        MLflow(target, Record("run-2", "Attempts", {"search": {"generations": length}}, start))
+        for start, length in ((0, 6), (4, 6), (5, 9))
+    )
+    newest.reports(reports(6, 7, 0.5))
+    newer.reports(reports(5, 8, 0.25))
+    old.reports(reports(1, 6, 0.0))
+    newest.reports(reports(8, 9, 0.5))
+    newest.file("best.json", b"new")
+    newest.close(True)
+    old.file("best.json", b"old")
+    old.close(False)
+    client, run, points = recorded(target, "Attempts")
+    assert points("evaluations") == [
+        *((step, step) for step in range(1, 5)),
+        *((5, 5.25), (6, 6.5), (7, 7.5), (8, 8.5), (9, 9.5)),
     ]
+    assert run.info.status == "FINISHED"
+    assert run.data.params["search.generations"] == "6"  # MLflow changes no parameter.
+    assert run.data.tags["search.generations"] == "9"
+    back = client.download_artifacts(run.info.run_id, "best.json")
+    assert Path(back).read_bytes() == b"new"
+
+
+PROCESS = """
+from microcosmos.sinks import process
+from microcosmos.sinks.address import Refused
+
+class Choosy:
+    def reports(self, reports):
+        raise Refused({"a//b": "is no name"})
+
+    def close(self, done):
+        pass
+
+process.open_sink = lambda opening: Choosy()
+process.main(lambda data: None)
+"""
+
+
+def test_what_a_sink_refuses_is_named_once_and_all_else_counts_as_delivered(
+    monkeypatch, caplog
+):
+    monkeypatch.setattr(delivery, "COMMAND", (sys.executable, "-c", PROCESS))
+    with caplog.at_level(logging.WARNING), delivery.Sinks([parse("mlflow:x")], RECORD) as sinks:
+        for generation in (1, 2):
+            sinks.report(report_of(generation))
+    (warned,) = (one.getMessage() for one in caplog.records)
+    assert warned == "Sink mlflow:x refuses a//b (is no name); it has all other values."

@@ -78,7 +78,7 @@ def wait_until(done, what):
 def evolving(folder, address):
     """Start a run as the command does, with a checkpoint after each generation."""
     options = ["--out", str(folder / "run.h5"), "--sink", f"mlflow:{address}"]
-    command = [sys.executable, "-m", "microcosmos.cli", "evolve", str(folder / "spec.json")]
+    command = [sys.executable, "-m", "microcosmos", "evolve", str(folder / "spec.json")]
     return subprocess.Popen(
         [*command, *options, "--checkpoint-seconds", "0"],
         cwd=folder,
@@ -99,7 +99,9 @@ def records(address):
 
 
 def test_a_killed_run_is_resumed_in_its_record_over_http(server, tmp_path):
-    spec = {**SMALL_RUN, "search": {**SMALL_RUN["search"], "generations": GENERATIONS}}
+    # Long evaluations: the record lags behind the run, which must not end before it is killed.
+    search = SMALL_RUN["search"] | {"generations": GENERATIONS}
+    spec = SMALL_RUN | {"task": {"steps": 2000}, "search": search}
     (tmp_path / "spec.json").write_text(json.dumps(spec))
     first = evolving(tmp_path, server)
     wait_until(lambda: len(records(server)[2]) >= 3 or first.poll() is not None, "three steps")

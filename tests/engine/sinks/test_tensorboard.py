@@ -43,3 +43,4 @@ def test_steps_after_a_crash_take_the_place_of_the_lost_ones(attempts, tmp_path)
     found = [(one.step, one.value) for one in events.Scalars("qd_score")]
     before, after = [(s, s) for s in range(1, 5)], [(s, s + 0.5) for s in range(5, 9)]
     assert found == before + after
+    assert [one.step for one in events.Tensors("spec/text_summary")] == [0, 4]

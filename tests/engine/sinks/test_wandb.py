@@ -1,6 +1,7 @@
 """The offline files of W&B hold each step of a run once, under one id."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ pytestmark = pytest.mark.filterwarnings("ignore")
 
 def read(folder):
     """Return the ids, the rows and the other records of all offline folders, in order."""
-    files = sorted(folder.glob("wandb/offline-run-*/run-*.wandb"))
+    files = sorted(folder.rglob("run-*.wandb"))
     records = [one for file in files for one in wandb_files.records(file)]
     return files, records, [wandb_files.row(one) for one in records if one.HasField("history")]
 
@@ -48,3 +49,20 @@ def test_a_resumed_run_has_one_id_and_no_double_steps(attempts, wandb_folder):
         *((step, step) for step in range(1, 7)),
         *((step, step + 0.5) for step in (7, 8)),
     ]
+
+
+@pytest.mark.long
+def test_a_killed_sink_a_deleted_folder_and_another_project_get_the_steps_again(
+    attempt, wandb_folder
+):
+    def steps():
+        return [row["_step"] for row in read(max(wandb_folder.glob("wandb/offline-run-*")))[2]]
+
+    attempt("wandb:swimmers", 0, 6, killed=True)
+    attempt("wandb:swimmers", 4, 8)  # It cannot know what of 5 and 6 is in the file.
+    assert steps() == [5, 6, 7, 8]
+    attempt("wandb:others", 0, 8)
+    assert steps() == list(range(1, 9))
+    shutil.rmtree(wandb_folder / "wandb")
+    attempt("wandb:swimmers", 2, 8)
+    assert steps() == list(range(3, 9))

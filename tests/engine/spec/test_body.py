@@ -26,6 +26,12 @@ BUILT = {
 WHOLE = TypeAdapter(Body)
 
 
+APART = {
+    "nodes": [[x, 0] for x in (0, 1, 2, 64, 65, 66)],
+    "edges": [[0, 1], [1, 2], [3, 4], [4, 5]],
+}
+
+
 def refusal(body):
     with pytest.raises(ValidationError) as caught:
         parse({"experiment": "quality-diversity", "body": body})
@@ -45,15 +51,6 @@ def test_every_builder_makes_one_connected_body_that_survives_json(builder):
     assert networkx.is_connected(graph)
 
 
-@pytest.mark.parametrize("builder", list(BUILT))
-def test_stiffness_is_the_same_everywhere(builder):
-    stiffnesses = {"stretch": 0.9, "shear": 0.8, "bend": 0.7}
-    measures = BUILT[builder][0] | stiffnesses
-    body = spec.shape(WHOLE.validate_python({"builder": builder, **measures}))
-    for name, stiffness in stiffnesses.items():
-        np.testing.assert_array_equal(getattr(body, name), stiffness)
-
-
 def test_a_body_that_names_no_builder_is_a_chain():
     chosen = parse({"experiment": "quality-diversity", "body": {"nodes": 12}})
     assert chosen.body == spec.Chain(nodes=12)
@@ -67,8 +64,14 @@ def test_a_body_that_names_no_builder_is_a_chain():
         ({"builder": "ring", "gap": 0.2}, "body.gap: Extra inputs"),
         ({"builder": "worm", "stretch": 1}, "body.stretch: Extra inputs"),
         ({"builder": "graph", "nodes": TRIANGLE, "edges": [[0, 1], [1, 5]]}, "0 to 2, got 5"),
+        (
+            {"builder": "graph", "nodes": [*TRIANGLE, [9, 9]], "edges": [[0, 1], [1, 2]]},
+            "`edges` must join every node; node 3 is in none",
+        ),
         ({"builder": "graph", "nodes": TRIANGLE, "edges": [[0, 1], [1, 0]]}, "0 and 1 twice"),
         ({"builder": "star", "arms": 64, "spacing": 0.5}, "0.25 cells apart"),
+        # The second filament lies on the image of the first.
+        ({"builder": "graph", **APART}, "at least 71 cells for a `body` that reaches 66 cells"),
         ({"builder": "polyline", "points": [[0, 0], [0, 0]]}, "must not all be the same"),
     ],
     ids=lambda value: value if isinstance(value, str) else value["builder"],
@@ -80,7 +83,7 @@ def test_an_impossible_body_is_refused_with_the_reason(body, reason):
 @pytest.mark.parametrize("body", [5, None, "ring", [1], {"builder": "snake"}])
 def test_what_names_no_builder_is_refused_with_the_known_ones(body):
     text = refusal(body)
-    assert text.startswith("body: `builder` must be one of chain, ring")
+    assert "`builder` must be one of chain, ring" in text
     assert "jellyfish" in text
 
 
@@ -146,23 +149,3 @@ def test_a_drawing_shows_copies_and_obstacles():
     assert found.solid[20, 80]
     assert not found.solid[64, 48]
     assert drawing(parse({"experiment": "quality-diversity"})).solid is None
-
-
-def test_a_fold_shows_its_pictures_and_a_sweep_its_swimmers():
-    folds = drawing(parse({"experiment": "folding"}))
-    assert [name for name, _ in folds.pictures] == [str(digit) for digit in range(10)]
-    assert all(ink.max() > 0.5 for _, ink in folds.pictures)
-    sweep = drawing(parse({"experiment": "gaits", "swimmers": ["cilia", "ray"]}))
-    assert [body.name for body in sweep.bodies] == ["cilia", "ray"]
-
-
-def test_a_crowd_is_drawn_by_some_of_its_filaments_within_the_box():
-    found = drawing(parse({"experiment": "scaling"}))
-    few, many = found.bodies
-    assert (few.nodes, many.nodes) == (1_000, 500_000)
-    assert (len(few.edges), len(many.edges)) == (50, 600)
-    assert (few.whole, many.whole) == (True, False)
-    lengths = np.hypot(*np.diff(many.positions.reshape(-1, 2, 2), axis=1)[:, 0].T)
-    np.testing.assert_allclose(lengths, 19 * 0.35)
-    assert many.positions.min() > 0
-    assert many.positions.max() < 256

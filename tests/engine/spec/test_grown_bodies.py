@@ -4,18 +4,13 @@ import re
 from io import BytesIO
 
 import h5py
-import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
-from grown_bodies import genotype_of, grown_file, grown_scene
+from grown_bodies import grown_file, grown_scene
 from pydantic import ValidationError
 
-from microcosmos import bodies
 from microcosmos.archive import creature_h5
-from microcosmos.build import build_encoding
-from microcosmos.spec import drawing, estimate, parse
-from microcosmos.spec.creature import Identity
+from microcosmos.spec import drawing, parse
 
 ZOO = {
     "experiment": "quality-diversity",
@@ -42,26 +37,6 @@ def test_a_refined_creature_is_drawn_as_it_has_grown():
     assert (body.nodes, len(body.edges)) == (26, 26)
 
 
-@pytest.mark.long
-def test_the_graph_of_a_creature_is_the_body_that_is_simulated():
-    scene = grown_scene(softest=0.05)
-    body = Identity.model_validate(grown_file(scene)["identity"]).shape
-    encoding = build_encoding(scene, (16, 40))
-    genotype = jax.tree.map(jnp.asarray, genotype_of(scene))
-    grown, bones = encoding.develop(genotype)
-    there = np.asarray(grown.present)
-    np.testing.assert_allclose(body.positions, np.asarray(grown.positions)[there], atol=1e-5)
-    turns = np.asarray(bones.rest_angle)[np.asarray(bones.bends)]
-    np.testing.assert_allclose(body.rest_angle, turns, atol=1e-5)
-    stiffness = np.asarray(bones.stiffness)[np.asarray(bones.bends)]
-    np.testing.assert_allclose(body.bend, 0.05 ** (1 - stiffness), rtol=1e-5)
-    laid_out = bodies.layout(body)
-    placed = np.asarray(bones.placed)[there][:, np.asarray(bones.there)]
-    np.testing.assert_allclose(laid_out.placed, placed, atol=1e-5)
-    turned = np.asarray(bones.turned)[np.asarray(bones.there)][:, np.asarray(bones.bends)]
-    np.testing.assert_allclose(laid_out.turned, turned, atol=1e-5)
-
-
 def test_an_hdf5_file_holds_the_grown_body_and_its_plan():
     file = grown_file(grown_scene())
     data = creature_h5.dump(file)
@@ -73,21 +48,9 @@ def test_an_hdf5_file_holds_the_grown_body_and_its_plan():
         np.testing.assert_allclose(plan["angle"], [0, 1.1, -0.6], rtol=1e-6)
 
 
-def test_the_estimate_grows_with_the_most_nodes_of_a_body():
-    small, large = (
-        estimate(parse({**ZOO, "body": {"builder": "grown", "nodes": nodes}})).memory_bytes
-        for nodes in (24, 96)
-    )
-    assert large > small
-
-
 @pytest.mark.parametrize(
     ("changes", "reason"),
     [
-        (
-            {"search": {"emitters": [{"operator": "population", "backend": "tensorneat"}]}},
-            "`backend` of a population must be 'microcosmos' where `control.encoding` is",
-        ),
         ({"coupling": {"nu_c": 1.0}}, "`coupling.nu_c` must be empty where `body.builder`"),
         (
             {"coupling": {"projection": "force", "theta_feedback": 0}},
@@ -98,7 +61,7 @@ def test_the_estimate_grows_with_the_most_nodes_of_a_body():
             "`body` must have a fixed graph to be folded",
         ),
     ],
-    ids=["tensorneat", "nu_c", "theta_feedback", "folding"],
+    ids=["nu_c", "theta_feedback", "folding"],
 )
 def test_what_a_grown_body_cannot_have_is_refused(changes, reason):
     given = {name: value for name, value in (ZOO | changes).items() if value is not None}

@@ -43,6 +43,15 @@ def test_the_ink_of_a_picture_becomes_a_pattern():
     [
         ({"kind": "pattern", "rows": "#./..."}, "`rows` must have one length"),
         ({"kind": "pattern", "rows": "#"}, "must leave at least 25% of the box"),
+        (
+            {"x": 500, "y": 8},
+            r"`obstacles.0.x` must be at most 48, the width of the box; got 500",
+        ),
+        ({"x": 8, "y": 48.5}, r"`obstacles.0.y` must be at most 48"),
+        (
+            {"kind": "wall", "x0": 8, "y0": 8, "x1": 8, "y1": 60},
+            r"`obstacles.0.y1` must be at most 48",
+        ),
         ({"kind": "hedge"}, "`kind` must be one of post, wall, pattern, got 'hedge'"),
     ],
 )
@@ -63,6 +72,32 @@ def test_every_trial_needs_room():
     spec.Scene(world=box)
     with pytest.raises(ValidationError, match="in trial 3"):
         spec.Scene(world=box, task=spec.Task(trials=3))
+
+
+@pytest.mark.parametrize(
+    ("trait", "x", "y"),
+    [
+        # A chain of 23 cells along x: its end is 11.5 from the middle, or twice as far.
+        ({"rest_length": {"low": 1.0, "high": 2.0}}, 55, 32),
+        ({"rest_angle": {"low": -3.0, "high": 3.0}}, 32, 42),
+    ],
+)
+def test_a_body_of_inherited_shape_needs_room_for_its_largest(trait, x, y):
+    post = spec.Post(x=x, y=y, radius=1)
+    box = spec.World(width=64, height=64, obstacles=(post,))
+    spec.Scene(world=box, control=spec.Direct())
+    with pytest.raises(ValidationError, match=r"`world.obstacles` must leave 2 cells"):
+        spec.Scene(world=box, control=spec.Direct(**trait))
+
+
+def test_copies_keep_apart_at_their_largest():
+    copies = {"count": 2, "arrangement": "row", "spacing": 30}
+    world = {"width": 128, "height": 128, "copies": copies}
+    control = {"encoding": "direct"}
+    spec.Scene.model_validate({"world": world, "control": control})
+    longer = control | {"rest_length": {"low": 1.0, "high": 2.0}}
+    with pytest.raises(ValidationError, match=r"spacing` must be at least 49 cells"):
+        spec.Scene.model_validate({"world": world, "control": longer})
 
 
 def test_elites_are_not_evaluated_again_at_random_places_among_obstacles():

@@ -45,13 +45,6 @@ def test_a_ring_is_closed_by_an_edge_of_its_last_node():
     assert (drawn.segments[1].ring, drawn.segments[1].number) == (True, 7)
 
 
-def test_a_segment_without_room_does_not_grow_nor_do_those_on_it():
-    inside = FINS | {"angle": 0.0, "mirrored": False}
-    drawn = plan_drawing(plan_identity(ROOT, inside, FINS | {"number": 2, "parent": 1}))
-    assert [segment.grown for segment in drawn.segments] == [1, 0, 0]
-    assert {node.segment for node in drawn.nodes} == {0}
-
-
 def test_genes_without_a_plan_are_refused():
     with pytest.raises(ValueError, match="must hold a plan, got 'cppn'"):
         plan_drawing(identity())

@@ -31,7 +31,7 @@ def run():
         curves=None,
         **fields,
     ):
-        document = {**SPEC, "seed": seed}
+        document = replaced({**SPEC, "seed": seed}, "search.batch", batch)
         for path, value in fields.items():
             document = replaced(document, path.replace("__", "."), value)
         along = np.arange(1, generations + 1) / generations

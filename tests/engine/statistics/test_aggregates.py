@@ -1,9 +1,11 @@
 """Aggregates over tasks follow Agarwal et al. (2021)."""
 
 import json
+from importlib import import_module
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from microcosmos.statistics import across, named, tables
 from microcosmos.statistics.effects import Bootstrap, middle_mean, superiority
@@ -33,6 +35,27 @@ def test_the_interquartile_mean_is_over_all_runs_relative_to_the_first_group(gro
     assert [task["world.viscosity"] for task in found.tasks] == [0.05, 0.2]
 
 
+def test_many_tasks_are_drawn_many_resamples_at_a_time(run, monkeypatch):
+    """One at a time takes 100 times as long; ten tasks of five seeds have 5^10 combinations."""
+    drawn, bootstrap = [], stats.bootstrap
+
+    def seen(*given, batch, **more):
+        drawn.append(batch)
+        return bootstrap(*given, batch=batch, **more)
+
+    monkeypatch.setattr(stats, "bootstrap", seen)
+    places = [(task, seed) for task in range(10) for seed in range(5)]
+    groups = {
+        name: [
+            run(1.0 + seed, seed=seed, world__viscosity=0.1 + task, world__width=width)
+            for task, seed in places
+        ]
+        for name, width in (("a", 96), ("b", 128))
+    }
+    across(named(groups), "best", TASK, FEW)
+    assert drawn == [FEW.resamples] * 3
+
+
 def test_the_probability_of_improvement_is_the_mean_over_tasks(groups):
     (found,) = across(groups, "qd_score", TASK, FEW).improvements
     shares = [
@@ -58,6 +81,10 @@ def test_tasks_that_a_group_lacks_are_refused(groups, group_of):
     lacking = named({"a": groups[0].runs, "b": group_of(OTHER[0], world__width=128)})
     with pytest.raises(ValueError, match="every group needs the same tasks"):
         across(lacking, "qd_score", TASK, FEW)
+    (other,) = group_of([1.0], archive__container={"kind": "x"}, world__width=96)
+    mixed = named({"a": [*groups[0].runs, other]})
+    with pytest.raises(ValueError, match=r"`archive\.container\.kind` none in .* and x in"):
+        across(mixed, "qd_score", TASK, FEW)
     fewer = named({"a": groups[0].runs[:-1]})
     with pytest.raises(ValueError, match="as many runs of every task, got 5, 4"):
         across(fewer, "qd_score", TASK, FEW)
@@ -69,6 +96,31 @@ def test_tasks_may_be_lists(run):
     found = across(named({"a": runs}), "qd_score", ["search.initial"], FEW)
     assert found.tasks == ({"search.initial": []},)
     assert "Over 1 task (search.initial" in tables.aggregates_text([found])
+
+
+def test_tasks_may_be_kinds_which_have_fields_of_their_own(group_of):
+    direct = {"encoding": "direct", "genes": 7}
+    runs = group_of(BASE[0]) + group_of(BASE[1], control=direct)
+    found = across(named({"a": runs}), "qd_score", ["control.encoding"], FEW)
+    assert [task["control.encoding"] for task in found.tasks] == ["cppn", "direct"]
+    other = group_of([1.0], control=direct | {"genes": 9})
+    with pytest.raises(ValueError, match=r"`control\.genes` none in .* and 7 in"):
+        across(named({"a": runs + other}), "qd_score", ["control.encoding"], FEW)
+
+
+def test_differences_and_cautions_are_stated(groups, group_of):
+    old = {"world__width": 128, "version": "0.0.9", "curves": {"mean": np.full(4, -1.0)}}
+    runs = group_of(OTHER[0], **old) + group_of(OTHER[1], world__viscosity=0.2, **old)
+    mixed = [groups[0], *named({"other": runs})]
+    several = [across(mixed, measure, TASK, FEW) for measure in ("best", "qd_score")]
+    text = tables.aggregates_text(several)
+    assert "their specs differ, in this order, in world.width (96, 128). Over 2 tasks" in text
+    assert (
+        "Runs are of several versions: 0.1.0, 0.0.9. Some runs have negative fitness." in text
+    )
+    best, qd_score = json.loads(tables.aggregates_json(several))
+    assert best["differences"] == qd_score["differences"] == {"world.width": [96, 128]}
+    assert [len(one["cautions"]) for one in (best, qd_score)] == [1, 2]
 
 
 def test_numbers_of_tasks_are_equal_in_any_form(run):
@@ -97,15 +149,9 @@ def test_fewer_than_five_seeds_of_a_task_have_no_interval(group_of):
     assert found.refusal.endswith("got 3 in 'a'.")
 
 
-def test_text_and_json_state_tasks_and_method(groups):
-    found = [across(groups, "qd_score", TASK, FEW)]
-    assert "world.viscosity 0.05, world.viscosity 0.2" in tables.aggregates_text(found)
-    (document,) = json.loads(tables.aggregates_json(found))
-    assert document["groups"][0]["runs"] == 10
-
-
 def test_means_and_probabilities_are_those_of_rliable():
     metrics = pytest.importorskip("rliable.metrics", reason="make peers installs rliable")
+    import_module("rliable.library")  # It needs a version of arch that knows pandas 3.
     ours, theirs = np.random.default_rng(0).random((2, 7, 4))
     assert middle_mean(*ours.T) == pytest.approx(metrics.aggregate_iqm(ours))
     shares = [superiority(x, y) for x, y in zip(ours.T, theirs.T, strict=True)]

@@ -1,17 +1,13 @@
 """Comparisons state what differs, correct for all tests, and refuse wrong use."""
 
-import csv
-import json
-from io import StringIO
-
 import numpy as np
 import pytest
 from scipy import stats
 
-from microcosmos.statistics import by_spec, compare, named, tables
-from microcosmos.statistics.effects import Bootstrap
+from microcosmos.statistics import by_spec, compare, named, tables, wording
+from microcosmos.statistics.effects import Bootstrap, holm
+from microcosmos.statistics.groups import differences
 from microcosmos.statistics.measures import Measure
-from microcosmos.statistics.testing import holm
 
 SLOW, FAST, FASTEST = [5.0, 3, 4, 1, 2], [2.5, 6, 7, 8, 9], [10.0, 12, 11, 13, 14]
 FEW = Bootstrap(199)
@@ -44,10 +40,26 @@ def test_pairs_are_tested_and_corrected_over_all_measures(three):
     assert found.differences == {"world.viscosity": [0.05, 0.2, 0.4]}
 
 
-def test_two_groups_have_no_test_over_all(three):
-    (result,) = compare(three[:2], ["qd_score"], FEW).results
-    assert result.overall is None
-    assert result.pairs[0].p == result.pairs[0].test.p
+def test_every_field_in_which_groups_differ_is_named(run):
+    novelty = {"kind": "dominated-novelty", "neighbours": 3}
+    runs = [run(1.0), run(2.0, world__viscosity=0.2), run(3.0, archive__container=novelty)]
+    groups = by_spec(runs)
+    assert [group.name for group in groups] == [
+        "world viscosity 0.05, container kind none",
+        "world viscosity 0.2, container kind none",
+        "world viscosity 0.05, container kind dominated-novelty",
+    ]
+    differ = {
+        "world.viscosity": [0.05, 0.2, 0.05],
+        "archive.container.kind": [None, None, "dominated-novelty"],
+    }
+    assert differences(groups) == differ, "the number of neighbours follows from the kind"
+    assert "archive.container.kind (none, none, dominated-novelty). " in tables.text(
+        compare(groups, ["qd_score"], FEW)
+    )
+    other = run(4.0, archive__container=novelty | {"neighbours": 5})
+    within = differences(by_spec([*runs, other]))
+    assert within["archive.container.neighbours"] == [None, None, 3, 5]
 
 
 def test_evaluations_to_a_value_count_from_the_generation_that_reaches_it(group_of):
@@ -68,9 +80,93 @@ def test_a_corrected_score_is_the_last_one_until_then(group_of, run):
         Measure.parse("corrected_qd_score").of(run())
 
 
-@pytest.mark.parametrize("text", ["", "qd score", "best>0.5", "best@0.5", "evaluations"])
+def test_a_group_that_was_never_evaluated_again_reaches_no_corrected_value(group_of, run):
+    repeated = [run(seed=seed, corrected=[0.0, 0.0, 0.2, 0.3]) for seed in range(5)]
+    groups = named({"a": repeated, "b": group_of([2.0] * 5)})
+    with pytest.raises(ValueError, match=r"`corrected_qd_score>=0\.1` needs elites that were"):
+        compare(groups, ["corrected_qd_score>=0.1"], FEW)
+    late = run(corrected=[np.nan, np.nan, 0.2, np.nan])
+    assert Measure.parse("corrected_qd_score>=0.1").of(late) == 30
+    assert Measure.parse("corrected_qd_score>=0.3").of(late) == np.inf
+
+
+def test_corrected_values_of_other_schedules_are_refused(run):
+    """Equal scores where both are known: the second group only shows them later."""
+    curves = {1: [0.1, 0.2, 0.3, 0.4], 3: [np.nan, np.nan, 0.3, 0.4]}
+    groups = named(
+        {
+            f"every {every}": [
+                run(
+                    seed=seed,
+                    name=f"every-{every}.h5",
+                    corrected=own,
+                    search__reevaluation={"every": every},
+                )
+                for seed in range(5)
+            ]
+            for every, own in curves.items()
+        }
+    )
+    late = r"got one after 10 in every-1\.h5 and none there in every-3\.h5"
+    refused(groups, late, ["corrected_qd_score>=0.1"])
+    refused(groups, "`corrected_qd_score@20` needs elites that", ["corrected_qd_score@20"])
+    measures = ["corrected_qd_score", "corrected_qd_score@30"]
+    for result in compare(groups, measures, FEW).results:
+        assert [one.median for one in result.summaries] in ([0.3, 0.3], [0.4, 0.4])
+
+
+def test_a_curve_without_numbers_is_refused_in_its_own_words(run):
+    empty = run(curves={"qd_score": np.full(4, np.nan)})
+    for text in ("qd_score", "qd_score>=1", "qd_score@20"):
+        with pytest.raises(ValueError, match=f"`{text}` needs a number, got NaN"):
+            Measure.parse(text).of(empty)
+
+
+def test_a_measure_that_is_named_twice_is_one(three):
+    twice = ["qd_score@40", "qd_score@4_0", Measure("qd_score", at=40), "best"]
+    found, once = (
+        compare(three, measures, FEW) for measures in (twice, ["qd_score@40", "best"])
+    )
+    assert found.tests == once.tests == 6
+    assert found.results == once.results
+
+
+@pytest.mark.parametrize("value", ["2", "2.0000001", "0.1", "1e-07", "12345.678", "-0.333333"])
+def test_labels_keep_the_digits_of_a_value(value):
+    measure = Measure.parse(f"qd_score>={value}")
+    assert measure.text == f"qd_score>={value}"
+    assert measure.title == f"evaluations to QD score {value}"
+
+
+def test_values_that_differ_have_names_that_differ(group_of):
+    values = (0.12345, 0.123451)
+    runs = [run for value in values for run in group_of([1.0], world__viscosity=value)]
+    assert [group.name for group in by_spec(runs)] == [
+        "viscosity 0.12345",
+        "viscosity 0.123451",
+    ]
+    ends = [[*range(20), end] for end in (20, 21)]
+    long = [run for end in ends for run in group_of([1.0], search__initial=end)]
+    cut = "0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 1…"
+    groups = by_spec(long)
+    assert [group.name for group in groups] == [f"initial {cut} (1)", f"initial {cut} (2)"]
+    assert "18, 19, 20, 0, 1" in wording.described(groups), "the lists stand whole"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(9999.4, "9999"), (9999.6, "10,000"), (10000.4, "10,000")]
+)
+def test_numbers_have_four_digits_and_no_powers(value, text):
+    assert wording.number(value) == text
+    assert wording.number(-value) == f"-{text}"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "qd score", "best>0.5", "best@0.5", "evaluations", "best>=1e999", "coverage>=50"],
+)
 def test_what_is_no_measure_is_refused_with_the_forms(text):
-    with pytest.raises(ValueError, match=r"a measure must be a .*, got|got `evaluations`"):
+    with pytest.raises(ValueError, match=r"`measure` needs a .*, got|got `evaluations`"):
         Measure.parse(text)
 
 
@@ -90,10 +186,19 @@ def refused(groups, message, measures=("qd_score",)):
         compare(groups, measures, FEW)
 
 
+def test_no_groups_and_no_measures_are_refused(group_of):
+    refused([], "statistics need a group, got none")
+    refused(named({"a": []}), "group 'a' needs a run, got none")
+    refused(named({"a": group_of(SLOW)}), "`measures` needs at least one", measures=())
+    for made, message in (((0,), "`resamples` must be at least 1; got 0"), ((9, -1), "`seed`")):
+        with pytest.raises(ValueError, match=message):
+            Bootstrap(*made)
+
+
 def test_unequal_evaluations_are_refused_with_the_point_at_which_to_compare(group_of):
     short, long = group_of(SLOW), group_of(FAST, generations=8)
     groups = named({"short": short, "long": long})
-    refused(groups, r"equal evaluations, got 40 in .* and 80 in .*as qd_score@40")
+    refused(groups, r"equal evaluations, got 40 in .* and 80 in .*; compare at qd_score@40")
     (result,) = compare(groups, ["qd_score@40"], FEW).results
     assert result.summaries[1].median == pytest.approx(7 / 2)
     refused(groups, r"from 10, its first generation, to 40, its last, got 60", ["best@60"])
@@ -136,33 +241,6 @@ def test_an_unfinished_run_is_refused_with_how_far_it_is(group_of, run):
     refused(groups, "needs finished runs, got 1-seed7.h5, which is at generation 4 of 9")
 
 
-def test_groups_without_names_are_those_of_specs(group_of):
-    runs = group_of(SLOW) + group_of(FAST, world__viscosity=0.2)
-    found = by_spec(runs[::-1])
-    names = ["viscosity 0.2", "viscosity 0.05"]
-    assert [(group.name, group.seeds) for group in found] == [
-        (n, list(range(5))) for n in names
-    ]
-
-
-def test_versions_that_differ_are_said(group_of):
-    groups = named({"old": group_of(SLOW), "new": group_of(FAST, version="0.2.0")})
-    assert "several versions: 0.1.0, 0.2.0" in tables.text(compare(groups, ["best"], FEW))
-
-
-def test_csv_and_json_hold_every_number_in_full(three):
-    found = compare(three, ["qd_score"], FEW)
-    rows = list(csv.DictReader(StringIO(tables.csv(found))))
-    runs = [row for row in rows if row["table"] == "run"]
-    assert [float(row["value"]) for row in runs] == SLOW + FAST + FASTEST
-    (pair,) = [row for row in rows if (row["group"], row["other"]) == ("slow", "fast")]
-    document = json.loads(tables.json(found))
-    (measure,) = document["measures"]
-    assert measure["pairs"][0]["p_holm"] == float(pair["p_holm"])
-    assert measure["groups"][1]["values"] == FAST
-    assert document["bootstrap"] == {"resamples": 199, "seed": 0}
-
-
 def test_latex_is_a_booktabs_table_of_escaped_words(group_of):
     groups = named({"50 % & more": group_of(SLOW), "b_2": group_of(FASTEST)})
     text = tables.latex(compare(groups, ["qd_score"], FEW))
@@ -171,6 +249,9 @@ def test_latex_is_a_booktabs_table_of_escaped_words(group_of):
     assert r"50\,\% \& more & b\_2 & 0 & 0.008 & 0.008 & 0.00 & 0.00--0.00 \\" in text
     body = [line for line in text.splitlines() if line.endswith(r"\\")]
     assert {line.count(" & ") for line in body} == {6, 7}
+    broken = tables.latex(compare(named({"a\nb": group_of(SLOW)}), ["qd_score"], FEW))
+    assert "\n% \\caption{There is one group: a b." in broken
+    assert "QD score & a b & 5" in broken
 
 
 def test_latex_keeps_minus_signs_and_words(group_of):
@@ -184,14 +265,3 @@ def test_latex_keeps_minus_signs_and_words(group_of):
     assert rows[3].startswith("evaluations to QD score -2 & point to point & 5 & ")
     assert " & $U$ & $p$ & p (Holm) & $A_{12}$ & " in text
     assert "---" not in text
-
-
-def test_tests_that_cannot_find_a_difference_are_said_to(group_of):
-    scores = {"a": [1.0, 2, 3, 4, 5], "b": [6.0, 7, 8, 9, 10]}
-    groups = named({name: group_of(values) for name, values in scores.items()})
-    many = compare(groups, ["qd_score", "qd_score@10", "qd_score@20", "qd_score@30", "best@10",
-                            "best@20", "best@30"], FEW)  # fmt: skip
-    least = min(pair.p for result in many.results for pair in result.pairs)
-    (caution,) = tables.document(many)["cautions"]
-    assert f"With these numbers of runs and 7 tests, no p can be below {least:.3f}" in caution
-    assert not tables.document(compare(groups, ["qd_score"], FEW))["cautions"]

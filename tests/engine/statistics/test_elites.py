@@ -1,7 +1,5 @@
 """Archives without elites, and sums of negative fitness, mislead nobody."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -45,22 +43,6 @@ def test_an_archive_without_elites_reaches_nothing(run, text):
     fitness = {name: np.array([0.0, 0, -40, -30]) for name in ("best", "mean")}
     assert Measure.parse(text).of(run(curves={"coverage": later, **fitness})) == 30
     assert Measure.parse("best@20").of(run(curves={"coverage": later, **fitness})) == -np.inf
-
-
-def test_tables_say_that_a_run_has_no_elites(costs):
-    found = compare(costs, ["best"], FEW)
-    text = tables.text(found)
-    assert "no elites to -20" in text
-    assert "A run without elites has no best or mean fitness, and counts as less" in text
-    (measure,) = json.loads(tables.json(found))["measures"]
-    assert measure["groups"][1]["values"] == [*BETTER, None, None]
-
-
-def test_latex_has_no_dash_between_a_word_and_a_number(run):
-    curves = {"coverage": np.ones(4)} | {name: np.full(4, 3.0) for name in ("best", "mean")}
-    full = [run(3.0, seed=seed, curves=curves) for seed in range(3)]
-    groups = named({"a": [*full, run(0.0, seed=4, curves=EMPTY)]})
-    assert "no elites to 3" in tables.latex(compare(groups, ["best"], FEW))
 
 
 def test_sums_of_negative_fitness_have_a_caution(costs, group_of):

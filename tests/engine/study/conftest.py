@@ -67,4 +67,4 @@ def finished(planned):
     assert carry_out(found, tell=lambda progress: told.append(progress.done / progress.work))
     assert told == sorted(told)
     assert told[-1] == pytest.approx(1)
-    return found, report.write(found, "the file", "the command")
+    return found, report.write(found, b"the file", "the command")

@@ -26,7 +26,7 @@ def start():
     processes = []
 
     def run(path, *options):
-        command = [sys.executable, "-m", "microcosmos.cli", "study", str(path)]
+        command = [sys.executable, "-m", "microcosmos", "study", str(path)]
         command += ["--checkpoint-seconds", "0", *options]
         processes.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
         return processes[-1]

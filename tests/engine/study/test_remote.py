@@ -16,7 +16,7 @@ class Server:
     url = "http://server"
 
     def __init__(self, plan, finish=True):
-        self.plan, self.finish, self.asked, self.looks = plan, finish, [], 0
+        self.plan, self.finish, self.asked, self.names, self.looks = plan, finish, [], [], 0
 
     def submit(self, spec, **asked):
         self.asked.append(asked | {"spec": spec})
@@ -24,12 +24,17 @@ class Server:
 
         class Fake(Sweep):
             def __init__(self):
-                super().__init__(Connection(server.url), {"status_counts": {"queued": 2}})
+                record = {"status_counts": {"queued": 2}, "name": None}
+                super().__init__(Connection(server.url), record)
 
             def refresh(self):
                 server.looks += 1
                 status = "finished" if server.finish else "failed"
                 self.record = {"status_counts": {status: 2}}
+                return self
+
+            def change(self, *, name):
+                server.names.append(name)
                 return self
 
             def runs(self):
@@ -71,11 +76,27 @@ def test_a_repeated_study_asks_for_the_same_sweep_and_nothing_once_it_is_there(e
     first = remote._submitted(found, "viscosity", server)
     remote._submitted(elsewhere()[0], "viscosity", server)
     assert isinstance(first, Sweep)
-    assert server.asked[0]["key"] == server.asked[1]["key"]
+    assert server.asked[0] == server.asked[1]
     remote.carry_out(found, server)
     server.asked.clear()
     remote.carry_out(found, server)
     assert server.asked == []
+
+
+def test_a_corrected_title_asks_for_the_same_sweep_and_a_long_one_is_cut(elsewhere, planned):
+    found, server = elsewhere()
+    remote._submitted(found, "viscosity", server)
+    remote._submitted(planned(title="t" * 200), "viscosity", server)
+    assert server.asked[0] == server.asked[1]
+    assert server.names == ["Thin & thick water: viscosity", f"{'t' * 189}: viscosity"]
+    # Another spec is another request, also where the grid makes the same runs of it.
+    sweep = found.study.sweeps["viscosity"].model_dump()
+    sweep["set"]["world.viscosity"] = 0.3
+    other = planned(sweeps={"viscosity": sweep})
+    assert [run.id for run in other.runs] == [run.id for run in found.runs]
+    remote._submitted(other, "viscosity", server)
+    assert server.asked[2]["key"] != server.asked[0]["key"]
+    assert {one["name"] for one in server.asked} == {"viscosity"}, "runs are named by it"
 
 
 def test_runs_that_fail_on_the_server_are_named(elsewhere):

@@ -1,14 +1,13 @@
 """Cards for other sites: a picture, and a film that ends as it begins."""
 
 import io
-from dataclasses import replace
 
 import av
 import numpy as np
 import pytest
 from PIL import Image
 
-from microcosmos.viz.card import FILM, MOMENT, PICTURE, RATE, loop, loop_frames, preview
+from microcosmos.viz.film import FILM, MOMENT, PICTURE, RATE, loop, loop_frames, preview
 from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.replay_file import read_replay
 
@@ -43,36 +42,12 @@ def test_a_preview_is_the_middle_of_a_frame_that_follows_the_creature(swimming, 
     np.testing.assert_array_equal(picture[ABOVE_THE_BAR], middle[ABOVE_THE_BAR])
 
 
-def test_a_creature_that_would_be_cut_is_shown_in_all_of_its_box(swimming):
-    upright = replace(swimming, positions=swimming.positions[..., ::-1] * [1, 2])
-    picture = opened(preview(upright))
-    halo = THEMES["light"].halo
-    assert (picture[ABOVE_THE_BAR, 0] == halo).all(), "beside the box there is nothing"
-    assert (picture[ABOVE_THE_BAR, -1] == halo).all()
-    wide = HEIGHT * 32 // 24
-    whole = frame(upright, 20, width=wide, follow=True)
-    left = (WIDTH - wide) // 2
-    shown = picture[:, left : left + wide]
-    np.testing.assert_array_equal(shown[ABOVE_THE_BAR], whole[ABOVE_THE_BAR])
-
-
-def test_the_bar_is_as_long_as_it_says(swimming):
-    """The box is 32 cells wide: 5 of them are the longest round length below 220 pixels."""
-    picture = opened(preview(swimming)).astype(int)
-    inked = (np.abs(picture[HEIGHT - 28] - THEMES["light"].ink).max(-1) < 8).nonzero()[0]
-    assert np.ptp(inked) == pytest.approx(5 * WIDTH / 32, abs=1.5)
-
-
 def test_a_loop_ends_where_it_begins(beating):
     numbers = loop_frames(beating)
     assert len(numbers) % PERIOD == 0
     assert numbers[-1] == 100
     shapes = beating.positions - beating.positions.mean(1, keepdims=True)
     np.testing.assert_allclose(shapes[numbers[0] - 1], shapes[100], atol=1e-4)
-
-
-def test_a_replay_without_room_for_a_loop_is_shown_whole(swimming):
-    assert loop_frames(swimming) == range(31)
 
 
 @pytest.mark.long

@@ -1,13 +1,13 @@
 """Figures show the numbers of their rows, and mark what is not sound."""
 
 import itertools
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
-from microcosmos.viz.figures import experiments
+from microcosmos import spec
+from microcosmos.archive import file
+from microcosmos.viz.figures import experiments, folding
 
 pytestmark = pytest.mark.long
 
@@ -89,37 +89,6 @@ def test_a_limit_and_a_failure_are_marked_where_they_were(rows):
         assert len(line(panel, label).get_xdata()) == 0
 
 
-def test_a_form_that_is_not_force_free_stands_out(rows):
-    ours, strong, paper = experiments.sweep(rows).axes
-    assert ours.get_facecolor() == strong.get_facecolor() != paper.get_facecolor()
-    assert "not force-free" in paper.get_title()
-
-
-def test_the_legend_explains_only_marks_that_are_there(rows):
-    def texts(some):
-        (legend,) = experiments.sweep(some).legends
-        return [text.get_text() for text in legend.get_texts()]
-
-    assert texts(rows) == ["worm", "ray", "a limit was active", "did not finish"]
-    sound = [row for row in rows if row["status"] == "ok" and not row["limited"]]
-    assert texts(sound) == ["worm", "ray"]
-
-
-def test_the_upper_axis_has_the_reynolds_numbers_of_the_worm_or_else_of_another(rows):
-    figure = experiments.sweep(rows)
-    for panel in figure.axes:
-        (upper,) = panel.child_axes
-        assert upper.get_xlabel() == "Reynolds number of the worm"
-        ticks = dict(zip(upper.get_xticks(), upper.get_xticklabels(), strict=True))
-        for viscosity, label in ticks.items():
-            reynolds = float(label.get_text().replace(",", ""))
-            assert reynolds == pytest.approx(3.1 / viscosity, rel=0.05)
-    assert set(upper.get_xticks()) <= set(VISCOSITIES)
-    figure = experiments.sweep([row for row in rows if row["swimmer"] == "ray"])
-    for panel in figure.axes:
-        assert panel.child_axes[0].get_xlabel() == "Reynolds number of the ray"
-
-
 def test_the_lines_of_a_scaling_run_have_the_numbers_of_its_rows(timings):
     summary = {"exponent": 1.0, "exponent_all_pairs": 2.0, "peak_memory_bytes": 2**27}
     time, memory = experiments.scaling(timings[::-1], summary).axes
@@ -139,32 +108,28 @@ def test_the_lines_of_a_scaling_run_have_the_numbers_of_its_rows(timings):
     assert memory.yaxis.get_major_formatter()(2**29) == "537 MB"
 
 
-def test_the_guide_of_a_scaling_run_is_linear(timings):
-    time, _ = experiments.scaling(timings).axes
-    x, y = line(time, "∝ n").get_data()
-    assert y[1] / y[0] == pytest.approx(x[1] / x[0])
-    assert (x[1], y[1]) == (64000, 70)
-
-
-def test_a_scaling_run_that_has_just_begun_is_drawn(timings):
-    time, memory = experiments.scaling(timings[:1]).axes
-    assert list(line(time, "Microcosmos").get_xdata()) == [1000]
-    assert len(memory.get_lines()) == 1
-
-
-@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
-def test_equal_figures_are_equal_files(rows, tmp_path, suffix):
-    first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
-    experiments.save(experiments.sweep(rows), first)
-    experiments.save(experiments.sweep(rows), second)
-    data = first.read_bytes()
-    assert data.startswith({"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix])
-    assert data == second.read_bytes()
-
-
-def test_a_file_of_another_kind_is_refused(timings, tmp_path):
-    with pytest.raises(ValueError, match=r"must end in .pdf, .svg, .png; got"):
-        experiments.save(experiments.scaling(timings), tmp_path / "a.bmp")
+def test_names_of_folded_pictures_stand_as_they_are_written(monkeypatch):
+    names = ["$a^$", "_hidden"]
+    packed = {"kind": "picture", "width": 2, "height": 2, "pixels": "/wAA/w=="}
+    chosen = spec.parse(
+        {"experiment": "folding", "targets": [packed | {"name": n} for n in names]}
+    )
+    size, nodes = (
+        (chosen.world.width, chosen.world.height),
+        len(spec.shape(chosen.body).positions),
+    )
+    courses = np.zeros((2, len(folding.MOMENTS), nodes, 2))
+    monkeypatch.setattr(folding, "_courses", lambda *_: courses)
+    folds = {"genes": np.zeros((2, 1)), "picture": np.zeros((2, *size)), "loss": np.ones(2)}
+    tree = {"folds": folds, "curves": {"loss": np.ones((3, 2))}}
+    attributes = {"format": file.FORMAT, "spec": chosen.model_dump_json()}
+    figure = folding.folds(file.dump(tree, attributes))
+    figure.canvas.draw()  # As mathematics, the first would be an error.
+    titles = [panel.title for panel in figure.axes if panel.get_title()]
+    labels = figure.axes[-1].get_legend().get_texts()
+    assert [one.get_text().strip("\u200b") for one in labels] == names
+    assert [one.get_text().split(":")[0].strip("\u200b") for one in titles] == names
+    assert not any(one.get_parse_math() for one in (*titles, *labels))
 
 
 @pytest.mark.parametrize(
@@ -175,12 +140,3 @@ def test_rows_that_lack_a_number_are_refused(draw, lacking):
         draw([])
     with pytest.raises(ValueError, match=f"`rows` must have {lacking}, .*; row 0 does not"):
         draw([{"anything": 1}])
-
-
-def test_figures_leave_matplotlibs_global_state_alone():
-    code = (
-        "import sys; from microcosmos.viz.figures import experiments as figures; "
-        "figures.scaling([{'method': 'microcosmos', 'nodes': 9, 'seconds': 1.0}]); "
-        "sys.exit('matplotlib.pyplot' in sys.modules)"
-    )
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -2,16 +2,15 @@
 
 import io
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from microcosmos.optional import require
-from microcosmos.viz.raster import THEMES, coverage, distance, frame, view
+from microcosmos.viz.film import GAP, LETTERS, moments, png, strip
+from microcosmos.viz.raster import THEMES, frame
 from microcosmos.viz.replay_file import read_replay
-from microcosmos.viz.strip import GAP, LETTERS, moments, png, strip
 
 pytestmark = pytest.mark.fast
 
@@ -123,36 +122,6 @@ def test_each_of_two_creatures_has_its_own_way(replay_bytes):
     np.testing.assert_allclose(centres, [[[5, 4], [21, 10]]] * 2)
 
 
-def test_distances_are_those_to_the_segment_and_coverage_falls_with_them():
-    starts, ends = np.array([[10.0, 20.0]]), np.array([[40.0, 32.0]])
-    got = distance(starts, ends, (60, 64), 9.0)
-    row, column = np.mgrid[:60, :64] + 0.5
-    points = np.stack([column, row], -1)
-    along = ends[0] - starts[0]
-    share = np.clip((points - starts[0]) @ along / (along @ along), 0, 1)
-    exact = np.linalg.norm(points - starts[0] - share[..., None] * along, axis=-1)
-    np.testing.assert_allclose(got, np.minimum(exact, 9), atol=1e-4)
-    # A thin line is faint and a thick one full.
-    assert coverage(np.zeros(1), 0.5) == 0.5
-    np.testing.assert_allclose(coverage(np.array([0, 2.0, 2.5]), 4.0), [1, 0.5, 0])
-
-
-def test_a_field_between_pixels_keeps_its_values_in_the_middles_of_cells():
-    random = np.random.default_rng(0)
-    field = random.normal(size=(16, 10))
-    shown = view((16, 10), 16 * 5, np.array([8.1, 5.1]))
-    # The camera is a tenth of a cell off, so that one pixel in five is the middle of a cell.
-    got = shown.sampled(field)
-    assert got.shape == (50, 80)
-    x = (np.arange(80) + 0.5) / 5 + 0.1
-    columns = np.flatnonzero(np.isclose(x, np.round(x)))
-    y = 5.1 + 5 - (np.arange(50) + 0.5) / 5
-    rows = np.flatnonzero(np.isclose(y, np.round(y)))
-    assert (len(rows), len(columns)) == (10, 16)
-    cells = np.ix_(x[columns].round().astype(int) % 16, y[rows].round().astype(int) % 10)
-    np.testing.assert_allclose(got[np.ix_(rows, columns)].T, field[cells], atol=1e-5)
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -178,43 +147,14 @@ def test_a_png_is_the_frame_itself(swimming):
     np.testing.assert_array_equal(picture, frame(swimming, 7, width=100, theme="dark"))
 
 
-def test_a_note_is_written_under_the_last_moment_alone(swimming):
-    plain, noted = (
-        opened(strip(swimming, 3, width=160, note=note)) for note in ("", "trusted")
-    )
-    changed = np.argwhere((plain != noted).any(-1))
-    assert len(changed) > 0
-    assert changed.min(0)[0] >= GAP + 120
-    assert changed.min(0)[1] > 2 * (160 + GAP) + GAP
-
-
-@pytest.mark.parametrize(("count", "columns"), [(1, None), (4, None), (5, 2), (6, 3)])
-def test_a_strip_has_the_moments_side_by_side(swimming, count, columns):
-    sheet = opened(strip(swimming, count, columns=columns, width=64))
-    across = columns or count
-    tall = 48 + 2 * GAP + LETTERS
-    assert sheet.shape[:2] == (-(-count // across) * tall + GAP, across * (64 + GAP) + GAP)
+@pytest.mark.parametrize("count", [1, 4])
+def test_a_strip_has_the_moments_side_by_side(swimming, count):
+    sheet = opened(strip(swimming, count, width=64))
+    assert sheet.shape[:2] == (48 + 3 * GAP + LETTERS, count * (64 + GAP) + GAP)
     for place, number in enumerate(moments(swimming, count)):
-        top, left = place // across * tall + GAP, place % across * (64 + GAP) + GAP
-        panel = sheet[top : top + 48, left : left + 64]
+        left = place * (64 + GAP) + GAP
+        panel = sheet[GAP : GAP + 48, left : left + 64]
         np.testing.assert_array_equal(panel, frame(swimming, number, width=64))
-
-
-def test_moments_are_even_and_each_has_its_step_written_below_it(swimming):
-    assert moments(swimming, 4) == [0, 10, 20, 30]
-    assert moments(swimming, 1) == [30]
-    assert moments(swimming, 31) == list(range(31))
-    slower = replace(swimming, header=swimming.header | {"every": 50})
-    assert [replay.step(15) for replay in (swimming, slower)] == [75, 750]
-    sheet, other = (opened(strip(replay, 3, width=64)) for replay in (swimming, slower))
-    changed = (sheet != other).any(-1)
-    assert not changed[: GAP + 48].any()
-    first, second, third = (changed[:, k * (64 + GAP) : (k + 1) * (64 + GAP)] for k in range(3))
-    assert not first.any()  # Step 0 in both.
-    assert second.any()
-    assert third.any()
-    written = (np.abs(sheet[GAP + 48 :].astype(int) - THEMES["light"].ink).max(-1) < 60).any(0)
-    assert all(written[k * (64 + GAP) :][: 64 + GAP].any() for k in range(3))
 
 
 @pytest.mark.parametrize(
@@ -222,8 +162,6 @@ def test_moments_are_even_and_each_has_its_step_written_below_it(swimming):
     [
         ({"count": 0}, "`count` must be from 1 to 31 frames, got 0"),
         ({"count": 32}, "`count` must be from 1 to 31 frames, got 32"),
-        ({"count": 3, "columns": 4}, "`columns` must be from 1 to 3, got 4"),
-        ({"count": 3, "columns": 0}, "`columns` must be from 1 to 3, got 0"),
     ],
 )
 def test_a_strip_that_cannot_be_is_refused(swimming, options, message):

@@ -11,7 +11,7 @@ import pytest
 import microcosmos as mc
 from microcosmos.archive import file, poses
 from microcosmos.client.archive import Archive
-from microcosmos.client.live import live
+from microcosmos.client.views import live
 from microcosmos.widgets import archive_map, contents
 
 TINY = {
@@ -88,16 +88,6 @@ def test_a_selection_names_creatures_and_loses_cells_that_are_gone(run):
     shown.show(run.spec)
     assert shown.selected == []
     assert shown._archive["cell"] == []
-
-
-def test_values_that_are_not_finite_are_none_in_json(run):
-    found = contents.of_file(run.path)
-    cell, one = next(iter(found.elites.items()))
-    found.elites[cell] = contents.Shown(
-        one.fitness, one.descriptors, 1, one.creature, {"speed": float("nan")}
-    )
-    text = json.dumps(found.document(), allow_nan=False)
-    assert json.loads(text)["measures"]["speed"][found.document()["cell"].index(cell)] is None
 
 
 def test_only_the_fittest_swim_on_a_large_map():

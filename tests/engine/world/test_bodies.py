@@ -77,19 +77,6 @@ def test_the_limit_of_force_is_each_bodys_own(float64):
     assert (one.held, two.held) == (0.5, 1)
 
 
-@pytest.mark.long
-def test_parallel_bodies_are_pushed_apart_and_not_the_fluid(float64):
-    body, steric = scenes.parallel_chains(20, 1.0), scenes.steric(4.0, float64, fields.binomial)
-    options = {"steric": steric, "limits": scenes.limits(0.3, float64)}
-    box, start = scenes.immersed(body, 0.3, float64, size=(48, 48), **options)
-    _, (positions, force) = watch(box, start, scenes.held(body, 300, float64))
-    y = np.asarray(positions[..., 1])
-    gap = y[:, 20:].mean(1) - y[:, :20].mean(1)
-    assert gap[-1] > 3
-    np.testing.assert_allclose(force, 0, atol=1e-6)
-    np.testing.assert_allclose(y.mean(1), 24, atol=1e-9)
-
-
 @pytest.mark.parametrize(
     ("name", "gradient"), [("tadpole", fields.gaussian), ("jellyfish", fields.binomial)]
 )
@@ -109,19 +96,6 @@ def test_no_body_moves_itself_by_repulsion(name, gradient, float64):
 
 def cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-
-
-@pytest.mark.long
-@BOTH
-def test_bodies_that_do_not_touch_neither_move_nor_turn_each_other(gradient, dtype):
-    bent = bodies.arc(20, 1.0, 0.25)
-    places = ((-14.0, -14.0), 0.4), ((14.0, 14.0), 1.9)
-    two = bodies.combined([bodies.placed(bent, place, turned=turn) for place, turn in places])
-    box, start = scenes.immersed(two, 0.3, dtype, steric=scenes.steric(4.0, dtype, gradient))
-    shaken = 0.3 * np.random.default_rng(0).normal(size=start.positions.shape)
-    push, drift = repel(box, np.asarray(start.positions) + shaken.astype(dtype))
-    assert np.abs(push).max() > 0.05
-    np.testing.assert_allclose(drift, 0, atol=1e-7)
 
 
 NODES, LEVER, GAP = 20, 7.0, 1.5
@@ -156,20 +130,6 @@ def test_contact_off_the_centre_turns_rods_by_the_torque_of_the_push(gradient, t
     np.testing.assert_allclose(np.sum(drift, 0), 0, atol=1e-14)
     one = NODES * cross(x[:NODES].mean(0) - 32, drift[:NODES].mean(0))
     assert abs(np.sum(cross(x - 32, drift))) <= 0.1 * abs(one)
-
-
-@pytest.mark.long
-@BOTH
-def test_rods_in_a_fluid_turn_each_other_and_not_the_fluid(gradient, float64):
-    body, box, start = overlapping(0.0, 4.0, gradient, float64)
-    _, (positions, force) = watch(box, start, scenes.held(body, 30, float64))
-    rods = np.asarray(positions).reshape(30, 2, NODES, 2)
-    ends = rods[-1, :, -1] - rods[-1, :, 0]
-    turns = np.arctan2(ends[:, 1], ends[:, 0])
-    assert np.all(turns < -0.05), turns
-    np.testing.assert_allclose(turns[0], turns[1], atol=1e-9)
-    np.testing.assert_allclose(rods[-1].mean((0, 1)), 32, atol=1e-9)
-    np.testing.assert_allclose(force, 0, atol=1e-13)
 
 
 @BOTH
@@ -207,10 +167,6 @@ def test_driven_filaments_cross_only_faster_than_the_limit(gradient, float64):
     for speed in (0.05, 0.095):
         assert driven_together(gradient, speed, float64) > 1
     assert driven_together(gradient, 0.2, float64) < 0
-
-
-def test_without_repulsion_driven_filaments_cross(float64):
-    assert driven_together(None, 0.05, float64) < -10
 
 
 SIZE, STEPS = (32, 32), 80

@@ -25,6 +25,7 @@ def small():
     return make
 
 
+@pytest.mark.long
 def test_no_known_swimmer_gives_the_fluid_an_impulse():
     assert not swimmers.check_impulse(period=250).failed
 
@@ -43,6 +44,7 @@ def test_limits_that_act_give_the_fluid_no_impulse(viscosity, dtype):
     assert swimmers.largest_impulse(box, start, wild) <= 1e-4
 
 
+@pytest.mark.long
 def test_the_literal_form_gives_the_fluid_an_impulse(float64):
     swimmer = worm()
     form = world.Form(projection=scenes.LITERAL.projection)

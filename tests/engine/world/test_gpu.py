@@ -96,6 +96,10 @@ def test_what_the_kernel_lacks_is_named():
         ({"layout": None}, "constraints that are swept"),
         ({"form": world.Form(layers=2)}, "layers"),
         ({"form": world.Form(fluid=False)}, "no fluid"),
+        (
+            {"form": world.Form(projection=lambda *given: coupling.force_free(*given))},
+            "forcing of another projection",
+        ),
     ):
         assert world.gpu.uncovered(replace(box, **part), start) == reason
     assert not world.gpu.chosen(box, start)  # There is no GPU here.

@@ -1,7 +1,6 @@
 """Gradients through network, body and fluid; absent nodes do nothing."""
 
 from dataclasses import replace
-from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -37,6 +36,7 @@ def loss(immerse, network_of):
     return make
 
 
+@pytest.mark.long
 def test_gradients_of_200_coupled_steps_agree_with_finite_differences(
     loss, require_slope, float64
 ):
@@ -123,20 +123,3 @@ def test_some_nodes_of_a_chain_swim_as_a_shorter_chain(pair, options):
     np.testing.assert_array_equal(other.curvature[:, GROWN - 2 :], 0)
     np.testing.assert_allclose(other.force, 0, atol=1e-13)
     assert jnp.linalg.norm(whole.positions[0] - start.positions[0]) > 0.01
-
-
-@pytest.mark.long
-def test_gradients_of_a_part_are_those_of_a_shorter_chain(pair):
-    @partial(jax.jit, static_argnums=2)
-    def slope(box, start, nodes):
-        def end(size):
-            rest = jax.tree.map(lambda x: x[:8], gait(nodes))
-            rest = replace(rest, angle=size * rest.angle)
-            return jnp.sum(world.rollout(box, start, rest)[0].positions[:GROWN, 1] ** 2)
-
-        return jax.grad(end)(1.0)
-
-    (short, start), (long, begun) = pair()
-    found = slope(long, begun, ALL)
-    np.testing.assert_allclose(found, slope(short, start, GROWN), rtol=1e-8)
-    assert abs(found) > 1e-6

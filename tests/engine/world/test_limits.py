@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from microcosmos import bodies, coupling, filaments, world
+from microcosmos import bodies, filaments, world
 from microcosmos.device import array
 from validation import scenes
 
@@ -34,24 +34,6 @@ def test_no_node_moves_further_than_the_limit(wild):
     speed = np.sqrt(np.sum(np.asarray(motion.target) ** 2, 1))
     assert np.sum(speed >= 0.999 * LIMIT) > 5
     assert np.max(speed) <= LIMIT * (1 + 1e-12)
-
-
-def test_no_forcing_exceeds_the_limit_and_sums_stay_zero(wild):
-    box, start, rest = wild
-    motion = move(box, start, rest, jnp.zeros_like(start.positions))
-    options = {"iterations": 3, "projection": coupling.torque_free, "limit": LIMIT / 4}
-
-    @jax.jit
-    def force(target, positions):
-        at, rho = coupling.windows(positions, box.size), jnp.ones(box.size)
-        given = (jnp.zeros_like(positions), target, positions, rho, at)
-        return coupling.multi_direct_forcing(*given, groups=box.groups, **options)
-
-    q = np.asarray(force(motion.target, start.positions).forcing)
-    x = np.asarray(start.positions)
-    np.testing.assert_allclose(np.sqrt(np.max(np.sum(q**2, 1))), LIMIT / 4)
-    np.testing.assert_allclose(np.sum(q, 0), 0, atol=1e-15)
-    np.testing.assert_allclose(np.sum(x[:, 0] * q[:, 1] - x[:, 1] * q[:, 0]), 0, atol=1e-13)
 
 
 def test_without_limits_the_same_body_moves_further(wild, immerse):
@@ -135,12 +117,6 @@ def test_a_filament_takes_its_rest_shape_and_its_middle_stays(dry, layers):
     np.testing.assert_allclose(np.hypot(*steps.T), 1.0, atol=1e-6)
     np.testing.assert_allclose(np.mean(end.positions, 0), np.mean(start.positions, 0))
     assert not np.any(forces)
-
-
-def test_without_a_fluid_there_is_no_flow(dry):
-    box, start, rest = dry(0.3, 20)
-    end, _ = jax.jit(lambda: world.rollout(box, start, rest))()
-    assert not np.any(flow(box, end))
 
 
 def test_limits_hold_without_a_fluid_too(dry):

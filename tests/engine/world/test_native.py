@@ -1,5 +1,8 @@
 """The native kernel against JAX: the same steps, to rounding; the same bits on every CPU."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from functools import partial
 
@@ -9,9 +12,10 @@ import jax.numpy as jnp
 import jaxlib.version
 import numpy as np
 import pytest
-from kernel_scenes import OBSERVED, SCENES, in_jax, run
+from kernel_scenes import OBSERVED, SCENES, controlled, in_jax, run
 
-from microcosmos import device, fields, filaments, world
+from microcosmos import coupling, device, fields, filaments, fluid, world
+from microcosmos.spec.evolution import UNLIMITED
 from microcosmos.version import VERSION
 
 kernels = pytest.importorskip(
@@ -20,7 +24,26 @@ kernels = pytest.importorskip(
 native = world.native
 
 
-@pytest.mark.parametrize("name", SCENES)
+QUICK = (
+    "shape matching",
+    "sweeps",
+    "three bodies",
+    "two layers",
+    "the paper's literal form",
+    "bodies that touch",
+    "energy that is taken and spreads",
+    "walls, a uniform force and a sponge",
+    "a body kept out of obstacles",
+    "a body that has grown",
+)
+"""Scenes of `make test`."""
+
+
+def quick(name):
+    return pytest.param(name, marks=() if name in QUICK else pytest.mark.long)
+
+
+@pytest.mark.parametrize("name", [quick(name) for name in SCENES])
 def test_the_kernel_takes_the_steps_of_jax(name):
     agree(SCENES[name]())
 
@@ -70,6 +93,36 @@ def test_every_instruction_set_gives_the_same_bits(name):
         jax.tree.map(np.testing.assert_array_equal, other, found[0])
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "control",
+    [
+        {},
+        {"encoding": "direct"},
+        {"sense_energy": True, "recurrent": True},
+    ],
+)
+def test_every_instruction_set_develops_the_same_bits(control):
+    """In open loop, and in a closed loop with memory."""
+    way = native.rollout if control.get("sense_energy") else native.develop
+    given = controlled(**control)
+    found = [way(*given, one) for one in kernels.instruction_sets()]
+    for other in found[1:]:
+        jax.tree.map(np.testing.assert_array_equal, other, found[0])
+
+
+def test_a_memory_that_senses_nothing_commands_the_same_within_a_rollout():
+    box, start, controller = controlled(recurrent=True, **UNLIMITED)
+    network = controller.commands
+    to_itself = network.source.at[0].set(network.target[0])  # An output that is remembered.
+    network = replace(network, source=to_itself)
+    given = box, start, replace(controller, commands=network)
+    rest, _ = jax.jit(native.develop)(*given)
+    _, observed = jax.jit(native.rollout)(*given)
+    jax.tree.map(np.testing.assert_array_equal, observed.rest, rest)
+    assert np.abs(np.asarray(rest.angle)).max() > 0.01
+
+
 def test_a_rollout_goes_on_where_another_ended():
     box, start, rest = SCENES["shape matching"]()
     whole, _ = run(native.rollout, (box, start, rest))
@@ -80,6 +133,7 @@ def test_a_rollout_goes_on_where_another_ended():
     )
 
 
+@pytest.mark.long
 def test_a_batch_gives_the_bits_of_each_world():
     box, start, rest = SCENES["shape matching"]()
     sizes = jnp.asarray([0.5, 1.0, 1.5], jnp.float32)
@@ -103,6 +157,15 @@ def test_what_is_not_finite_stays_inside_the_world():
         end, observed = run(native.rollout, (box, replace(start, positions=positions), rest))
         assert not np.isfinite(observed.centre).all()
         assert not np.isfinite(end.positions).all()
+
+
+def test_a_flow_that_is_not_finite_has_no_largest_speed():
+    box, start, rest = SCENES["sweeps"]()
+    for bad in (np.nan, -np.nan):  # The sign of NaN is a bit of its own.
+        one, *others = start.populations
+        scene = box, replace(start, populations=(one.at[5, 6].set(bad), *others)), rest
+        for rollout in (native.rollout, in_jax):
+            assert np.isnan(run(rollout, scene)[1].speed).all()
 
 
 def test_a_derivative_never_passes_through_the_kernel():
@@ -132,6 +195,12 @@ def test_what_the_kernel_lacks_is_left_to_jax(monkeypatch, float64):
     repelled = fields.Steric(jnp.float32(4), jnp.float32(0.1), lambda x: jnp.stack([x, x]))
     own = replace(box, steric=repelled)
     assert not native.chosen(own, start)
+    for form in (
+        world.Form(projection=lambda *given: coupling.force_free(*given)),
+        world.Form(kernel=coupling.Kernel(coupling.HAT.weight, 4)),
+        world.Form(magic=lambda tau: fluid.fixed_magic(tau)),
+    ):
+        assert not native.chosen(replace(box, form=form), start)
     exact = replace(start, positions=start.positions.astype(float64))
     assert not native.chosen(box, exact)
     monkeypatch.setenv("MICROCOSMOS_KERNEL", "jax")
@@ -146,6 +215,30 @@ def test_what_the_kernel_lacks_is_left_to_jax(monkeypatch, float64):
     monkeypatch.setenv("MICROCOSMOS_KERNEL", "fast")
     with pytest.raises(ValueError, match="one of auto, native, jax, got 'fast'"):
         native.chosen(box, start)
+
+
+@pytest.mark.parametrize("value", ["", "fast"])
+def test_a_variable_that_is_empty_is_unset_and_a_wrong_one_is_refused(value, tmp_path):
+    """In processes of their own, which read it when they import the library."""
+    given = os.environ | {"MICROCOSMOS_KERNEL": value}
+    code = "from microcosmos import device; device.prepare(); print(device.kernel())"
+    done = subprocess.run([sys.executable, "-c", code], env=given, capture_output=True)
+    if not value:
+        assert done.stdout == b"auto\n", done.stderr
+        return
+    wrong = "`MICROCOSMOS_KERNEL` must be one of auto, native, jax, got 'fast'\n"
+    assert done.stderr.decode().endswith(f"ValueError: {wrong}")
+    command = [sys.executable, "-m", "microcosmos", "evolve", "demo", "--out"]
+    done = subprocess.run([*command, tmp_path / "a.h5"], env=given, capture_output=True)
+    assert (done.returncode, done.stderr.decode()) == (2, wrong)
+
+
+@pytest.mark.parametrize("set_before", ["", "--xla_b=0", "--xla_b_of_another=1"])
+def test_flags_are_added_unless_one_of_them_is_set(monkeypatch, set_before):
+    monkeypatch.setenv("XLA_FLAGS", set_before)
+    device._add_flags("--xla_a=1 --xla_b=1")
+    added = "" if set_before == "--xla_b=0" else "--xla_a=1 --xla_b=1"
+    assert os.environ["XLA_FLAGS"] == f"{set_before} {added}".strip()
 
 
 @pytest.mark.skipif(not device.portable_flags(), reason="not compared on this platform")

@@ -4,12 +4,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from genotypes import any_genotype
-from kernel_scenes import SCENES, run
+from kernel_scenes import SCENES, controlled, run
 
-from microcosmos import search, spec, world
-from microcosmos.build import build_task
-from microcosmos.search.summary import summarise
+from microcosmos import world
+from microcosmos.search.window import summarise
 
 pytest.importorskip(
     "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
@@ -89,27 +87,6 @@ def summary():
     summarise(box, start, end, observed, jnp.arange(1.0, 101), 20.0, 20.0)
 
 
-def controlled(**control):
-    """World, start and controller of a creature."""
-    scene = spec.Scene.model_validate(
-        {
-            "world": {"width": 24, "height": 24, "energy": {}},
-            "body": {"nodes": 8},
-            "control": {"period": 20} | control,
-            "task": {"steps": 30},
-        }
-    )
-    task = build_task(scene)
-    genotype = any_genotype(scene, task.encoding, np.random.default_rng(0))
-
-    @jax.jit
-    def develop(genotype):
-        driven = search.drive(task, genotype, differentiable=True)
-        return driven.world, driven.start, driven.controller
-
-    return develop(genotype)
-
-
 CALLS = {
     "rollout": rollout,
     "rollout in closed loop": closed_loop,
@@ -149,6 +126,7 @@ def test_the_recorded_call_is_carried_out(call):
     assert all(np.isfinite(found).all() for found in carry_out(*call))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("change", ["longer", "deeper", "of integers"])
 def test_an_operand_of_another_shape_or_type_is_an_error_that_names_it(name, call, change):
     target, shapes, operands, numbers = call
@@ -158,18 +136,11 @@ def test_an_operand_of_another_shape_or_type_is_an_error_that_names_it(name, cal
         elif change == "deeper":
             wrong = operand[..., None]
         else:
-            wrong = operand.astype(np.int16)
+            wrong = np.zeros(operand.shape, np.int16)
         given = [*operands[:place], wrong, *operands[place + 1 :]]
         with pytest.raises(
             Exception, match=f"microcosmos-kernels: {label} must have the shape"
         ):
-            carry_out(target, shapes, given, numbers)
-
-
-def test_an_operand_too_few_or_too_many_is_an_error(call):
-    target, shapes, operands, numbers = call
-    for given in (operands[:-1], [*operands, operands[-1]], []):
-        with pytest.raises(Exception, match=r"there is no operand|there are \d+ operands"):
             carry_out(target, shapes, given, numbers)
 
 
@@ -181,32 +152,9 @@ def test_a_result_of_another_shape_is_an_error(call):
             carry_out(target, wrong, operands, numbers)
 
 
-def test_a_result_too_few_or_too_many_is_an_error(call):
-    target, shapes, operands, numbers = call
-    for wrong in (shapes[:-1], [*shapes, shapes[-1]]):
-        with pytest.raises(Exception, match=r"there is no result|\d+ results"):
-            carry_out(target, wrong, operands, numbers)
-
-
-def test_a_missing_number_is_an_error(call):
-    target, shapes, operands, numbers = call
-    for one in numbers:
-        fewer = {key: value for key, value in numbers.items() if key != one}
-        with pytest.raises(Exception, match=f"there is no number {one}"):
-            carry_out(target, shapes, operands, fewer)
-
-
 COUNTS = {
     *("steps", "nodes", "edges", "joints", "bodies", "rows", "links", "sites", "timers"),
     *("terms", "height", "width"),
-}
-CHOICES = {
-    "commands": (-1, 3),
-    "projection": (-1, 3),
-    "delta": (-1, 3),
-    "layers": (-1, 0, 3),
-    "iterations": (-1, 0),
-    "sweeps": (-1,),
 }
 
 
@@ -219,22 +167,6 @@ def test_a_count_out_of_range_is_an_error(call, value):
             continue  # One that has no nodes changes nothing there.
         with pytest.raises(Exception, match="microcosmos-kernels: "):
             carry_out(target, shapes, operands, numbers | {one: wrong})
-
-
-def test_a_choice_out_of_range_is_an_error(call):
-    target, shapes, operands, numbers = call
-    for one in set(CHOICES) & set(numbers):
-        for wrong in CHOICES[one]:
-            with pytest.raises(Exception, match="microcosmos-kernels: "):
-                carry_out(target, shapes, operands, numbers | {one: wrong})
-
-
-def test_a_world_has_a_node_a_body_and_some_cells(call):
-    target, shapes, operands, numbers = call
-    for one, wrong in {"nodes": 0, "bodies": 0, "width": 0, "height": 0}.items():
-        if one in numbers:
-            with pytest.raises(Exception, match="at least"):
-                carry_out(target, shapes, operands, numbers | {one: wrong})
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -57,21 +56,6 @@ def test_without_contact_a_body_does_not_move(dtype):
     box, start = among(POSTS, body, dtype, (14.0, 22.0))
     end, _ = world.rollout(box, start, held(body, 20, dtype))
     np.testing.assert_allclose(end.positions, start.positions, atol=1e-5)
-
-
-@pytest.mark.long
-def test_the_mirror_image_of_a_scene_has_the_mirror_image_of_its_motion():
-    with jax.enable_x64(True):
-        body, dtype = bodies.chain(12, 1.0), jnp.dtype("float64")
-        rest = held(body, 1500, dtype)
-        rest = replace(rest, angle=rest.angle + 0.05)
-        mirrored = tuple(one.model_copy(update={"y": SIZE - one.y}) for one in POSTS)
-        one = among(POSTS, body, dtype, (18.0, 22.0), push=3e-5)
-        other = among(mirrored, body, dtype, (18.0, SIZE - 22.0), push=3e-5)
-        end, _ = world.rollout(*one, rest)
-        image, _ = world.rollout(*other, replace(rest, angle=-rest.angle))
-        reflected = np.asarray(image.positions) * [1, -1] + [0, SIZE]
-        np.testing.assert_allclose(reflected, end.positions, atol=1e-8)
 
 
 def test_displacements_point_out_of_a_straight_wall_and_vanish_beyond_their_reach():

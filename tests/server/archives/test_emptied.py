@@ -2,12 +2,9 @@
 
 import pytest
 from answers import fields
-from deletion import delete_for_good
-from sqlalchemy import func, select
 
-from server.attempts.claim import claim
-from server.core import static_files
-from server.tables import Creature, Elite
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.core import static_files
 
 
 def cells_at(api, run_id, **asked):
@@ -53,17 +50,6 @@ def test_a_rewind_restores_what_was_emptied(api, services, run_id, report, attem
     again.record(report(2, emptied=(3,)), 1.0)
     again.record(report(2, emptied=(3,)), 1.0)  # As after an outage.
     assert cells_at(api, run_id) == ({5: 1.0}, {3: 2})
-
-
-@pytest.mark.postgresql
-def test_a_purge_removes_the_rows_of_emptied_cells(api, services, run_id, report, attempt):
-    attempt.record(report(1, {5: 1.0, 3: 2.0}), 1.0)
-    attempt.record(report(2, emptied=(5, 3)), 1.0)
-    attempt.finish()
-    delete_for_good(api, services, run_id)
-    with services.sessions.read() as session:
-        for table in (Elite, Creature):
-            assert session.scalars(select(func.count()).select_from(table)).one() == 0
 
 
 def test_a_fork_starts_from_elites_that_are_there(api, run_id, record, attempt):

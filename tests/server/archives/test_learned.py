@@ -1,6 +1,7 @@
 """Learned axes of a run that has ended: measures of its elites, with ends and bins."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ import reports
 from microcosmos.archive import components, file
 from microcosmos.archive.axes import floors
 from microcosmos.spec import QualityDiversity
-from server.runs.submission import submit
+from microcosmos_server.auth.authorize import SHARE_HEADER
+from microcosmos_server.runs.submission import submit
 
 CONTAINER = {"kind": "learned", "bins": 4, "measures": list(reports.EFFORTS)}
 
@@ -45,9 +47,11 @@ def checkpoint(spec, learned, epoch=1):
     return file.dump(tree, attributes)
 
 
+ASKED = {"measures": "learned_2,learned_1,bending_effort"}
+
+
 def listed(api, run_id, part=""):
-    asked = {"measures": "learned_2,learned_1,bending_effort"}
-    return api.get(f"runs/{run_id}/archive{part}", params=asked)
+    return api.get(f"runs/{run_id}/archive{part}", params=ASKED)
 
 
 @pytest.mark.postgresql
@@ -72,6 +76,44 @@ def test_elites_have_coordinates_once_the_run_has_ended(
     assert recorded[0]["title"].startswith("Learned axis 1 (")
     ends = [(one["low"], one["high"]) for one in recorded[:2]]
     assert ends == list(zip(learned.low.tolist(), learned.high.tolist(), strict=True))
+
+
+@pytest.mark.parametrize("later", [None, 3])
+def test_a_share_keeps_the_axes_of_its_own_file(
+    api, run_id, record, attempt, spec, learned, later
+):
+    """Later results are not visible through it, and its answers are none of the owner's."""
+    record(1, {5: 1.0}, measures={"bending_effort": 0.25, "stretching_effort": 4.0})
+    record(2, {7: 2.0}, measures={"bending_effort": 2.0, "stretching_effort": 0.1})
+    attempt.save(2, checkpoint(spec, learned))
+    slug = api.post("shares", json={"run": str(run_id)}).json()["slug"]
+    if later:
+        record(later)
+    turned = replace(learned, weights=-learned.weights)
+    attempt.save(later or 2, checkpoint(spec, turned))
+    attempt.finish()
+
+    def found(part, **headers):
+        answer = api.get(f"runs/{run_id}/archive{part}", params=ASKED, headers=headers)
+        return answer.json()["measures"]["learned_1"]
+
+    for part in ("", "/history"):
+        mine = found(part)
+        assert found(part, **{SHARE_HEADER: slug}) == pytest.approx([-one for one in mine])
+        assert found(part) == mine
+
+
+def test_a_share_without_a_file_has_no_learned_axes(
+    api, run_id, record, attempt, spec, learned
+):
+    record(1, {5: 1.0})
+    record(2, {7: 2.0})
+    attempt.save(2, checkpoint(spec, learned))
+    attempt.finish()
+    slug = api.post("shares", json={"run": str(run_id), "generation": 1}).json()["slug"]
+    through = {SHARE_HEADER: slug}
+    recorded = api.get(f"runs/{run_id}/archive", headers=through).json()["recorded"]
+    assert not [one for one in recorded if one["bins"]]
 
 
 def test_a_run_that_has_learned_nothing_has_no_learned_axes(

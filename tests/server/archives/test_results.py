@@ -9,9 +9,9 @@ from answers import detail
 from sqlalchemy.exc import OperationalError
 
 from microcosmos.archive import creature
-from server.attempts.claim import claim
-from server.tables import Result, Run
-from server.workers import registry
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.tables import Result, Run
+from microcosmos_server.workers import registry
 
 WORM = {"swimmer": "worm", "viscosity": 0.5, "ok": True, "number": 1}
 RAY = {"swimmer": "ray", "viscosity": 2.0, "ok": False, "number": 2}
@@ -74,8 +74,6 @@ def test_a_refinement_has_both_cells_and_a_table(api, services, identity, table)
     answer = api.get(f"runs/{run}/results.csv")
     assert "refinement-" in answer.headers["content-disposition"]
     assert answer.text.splitlines()[0] == "step,fitness,creature"
-    for path in ("archive", "archive.csv"):
-        assert api.get(f"runs/{run}/{path}").status_code == 404
     registry.report(services.sessions, "small", "cpu", 1000, "idle")
     large = api.post("runs", json={"experiment": "refinement", "creature": file})
     assert large.json()["errors"][0]["field"] == "segment"
@@ -134,7 +132,7 @@ def test_rows_and_run_are_written_in_one_transaction(
     def broken(*_):
         raise OperationalError("insert", {}, Exception("gone"))
 
-    monkeypatch.setattr("server.attempts.recording.count_results", broken)
+    monkeypatch.setattr("microcosmos_server.attempts.attempt.count_results", broken)
     with pytest.raises(OperationalError):
         attempt.record(table(1, WORM), 1.0)
     with services.sessions.read() as session:

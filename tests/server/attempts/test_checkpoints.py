@@ -1,14 +1,15 @@
 """Checkpoints: saved, pruned, and restored by the next attempt."""
 
-import errno
 import shutil
-from pathlib import Path
+from contextlib import contextmanager
 
 import pytest
+from sqlalchemy.exc import OperationalError
 
-from server.attempts.checkpoints import CheckpointUnavailable
-from server.storage.garbage import remove_files
-from server.tables import Artifact, Creature, Elite, Generation
+from microcosmos_server.attempts.checkpoints import CheckpointUnavailable
+from microcosmos_server.core import database
+from microcosmos_server.storage.garbage import remove_files
+from microcosmos_server.tables import Artifact, Creature, Elite, Generation
 
 pytestmark = pytest.mark.postgresql
 
@@ -88,38 +89,6 @@ def test_superfluous_checkpoints_are_deleted_with_their_files(
     assert claim_run().restore() == b"state 12"
 
 
-def test_a_full_disk_leaves_the_previous_checkpoint_and_a_warning(
-    row, monkeypatch, attempt, record, save
-):
-    save(1)
-    record(2)
-
-    def full(*_):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Path, "replace", full)
-        with pytest.raises(OSError, match="No space") as caught:
-            attempt.save(2, b"state 2")
-    attempt.warn(f"checkpoint failed: {caught.value.strerror}")
-    assert row().warning == "checkpoint failed: No space left on device"
-    assert attempt.restore() == b"state 1"
-    attempt.save(2, b"state 2")
-    assert row().warning is None
-    assert attempt.restore() == b"state 2"
-
-
-def test_three_attempts_without_a_checkpoint_end_a_run(claim_run, row):
-    for _ in range(2):
-        claim_run().fail("Traceback: first")
-        assert (row().status, row().finished_at) == ("queued", None)
-    claim_run().fail("Traceback: last")
-    assert row().status == "failed"
-    assert row().finished_at is not None
-    assert row().error == "3 attempts without a new checkpoint; the last one: Traceback: last"
-    assert claim_run() is None
-
-
 def test_a_new_checkpoint_or_a_requeue_resets_the_attempts(claim_run, report, row):
     for generation in range(1, 5):
         attempt = claim_run()
@@ -159,6 +128,29 @@ def test_a_run_goes_on_from_the_newest_intact_checkpoint(
     assert claim_run().restore() == b"state 3"
 
 
+def test_a_run_goes_on_from_an_intact_checkpoint_if_the_answer_to_its_choice_was_lost(
+    claim_run, folder, row, save, monkeypatch
+):
+    save(1, 2, 3)
+    next(folder.glob("00000003-*")).write_bytes(b"rot")
+    second = claim_run()
+    second.outage_seconds = 60.0
+    monkeypatch.setattr(database, "RETRY_SECONDS", 0.0)
+    current, answers = second.current, [OperationalError("", {}, Exception("away"))]
+
+    @contextmanager
+    def losing(**columns):
+        with current(**columns) as held:
+            yield held
+        if answers:
+            raise answers.pop()
+
+    monkeypatch.setattr(second, "current", losing)
+    assert second.restore() == b"state 2"
+    assert (second.generation, second.seconds) == (2, 2.0)
+    assert second.work == (row().evaluations, row().infeasible)
+
+
 @pytest.mark.parametrize("harm", [unmount, lose_the_newest, damage_all])
 def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
     claim_run, folder, row, harm, save, count
@@ -170,13 +162,3 @@ def test_a_checkpoint_that_cannot_be_read_deletes_nothing(
         second.restore()
     assert (row().generation, row().checkpoint_generation, row().qd_score) == (2, 2, 20.0)
     assert count(Generation) == count(Elite) == count(Artifact) == 2
-
-
-def test_a_run_resumes_when_its_files_are_there_again(services, claim_run, save, tmp_path):
-    save(1)
-    folder = services.settings.data / "artifacts"
-    folder.rename(tmp_path / "elsewhere")
-    with pytest.raises(CheckpointUnavailable):
-        claim_run().restore()
-    (tmp_path / "elsewhere").rename(folder)
-    assert claim_run().restore() == b"state 1"

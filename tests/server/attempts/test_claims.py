@@ -4,12 +4,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from redis import ConnectionError
+from sqlalchemy import update
 from sqlalchemy.exc import OperationalError
 
-from server.attempts import leases
-from server.attempts.attempt import Attempt, ClaimLost
-from server.runs import announce, lifecycle
-from server.tables import Elite, Generation, Run
+from microcosmos_server.attempts import leases
+from microcosmos_server.attempts.attempt import Attempt, ClaimLost
+from microcosmos_server.runs import announce, lifecycle
+from microcosmos_server.tables import Elite, Generation, Run
 
 pytestmark = pytest.mark.postgresql
 
@@ -25,6 +26,15 @@ def test_one_of_many_concurrent_claims_succeeds(claim_run):
     (held,) = (found for found in claims if found)
     assert held.number == 1
     assert claim_run("another") is None
+
+
+@pytest.mark.parametrize("status", ["paused", "finished", "failed", "cancelled"])
+def test_a_run_that_is_not_queued_is_not_claimed(services, run_id, claim_run, row, status):
+    """Since its worker was told of it, somebody may have paused or cancelled it."""
+    with services.sessions.write.begin() as session:
+        session.execute(update(Run).where(Run.id == run_id).values(status=status))
+    assert claim_run() is None
+    assert (row().status, row().attempt, row().worker) == (status, 0, None)
 
 
 def test_a_silent_workers_run_is_claimed_and_its_writes_refused(
@@ -93,9 +103,10 @@ def test_redis_can_be_away_while_a_run_is_recorded(services, attempt, record, ro
     def away(*_, **__):
         raise ConnectionError("Connection refused")
 
-    monkeypatch.setattr(services.redis, "xadd", away)
+    monkeypatch.setattr(services.events.redis, "execute_command", away)
     record(1, {1: 1.0})
     attempt.finish()
+    services.events.messenger.flush()
     assert row().status == "finished"
 
 

@@ -7,10 +7,10 @@ import pytest
 import reports
 from object_store import new_prefix
 
-from server.attempts import claim as claims
-from server.attempts.claim import claimed
-from server.storage import mark
-from server.storage.artifacts import Artifacts
+from microcosmos_server.attempts import claim as claims
+from microcosmos_server.attempts.claim import claimed
+from microcosmos_server.storage import mark
+from microcosmos_server.storage.artifacts import Artifacts
 
 pytestmark = pytest.mark.postgresql
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from server.auth import tokens
-from server.tables import Token
+from microcosmos_server.auth import tokens
+from microcosmos_server.tables import Token
 
 
 @pytest.fixture

@@ -9,18 +9,17 @@ import pytest
 from answers import detail, fields
 from pydantic import SecretStr
 
-from server.auth import __main__ as commands
-from server.auth import bootstrap, tokens
-from server.core.errors import ProblemError
-from server.tables import Token
+from microcosmos_server.auth import __main__ as commands
+from microcosmos_server.auth import bootstrap, tokens
+from microcosmos_server.core.errors import DomainError
+from microcosmos_server.tables import Token
 
 KEY = {"Idempotency-Key": "first"}
 
 
 @pytest.fixture
-def required(serve, admin):
-    with serve(auth="required") as address:
-        yield f"{address}/api/v1"
+def required(served, admin):
+    return f"{served(auth='required')}/api/v1"
 
 
 @pytest.fixture
@@ -66,7 +65,7 @@ def test_a_revoked_token_is_refused_at_once_by_name(required, client, admin, ser
 def test_an_expired_token_is_refused_and_its_name_is_free(required, client, services):
     soon = datetime.now(UTC) + timedelta(hours=1)
     made = tokens.create(services, "carol", "read", soon)
-    with pytest.raises(ProblemError, match="name 'carol' is taken"):
+    with pytest.raises(DomainError, match="name 'carol' is taken"):
         tokens.create(services, "carol", "read")
     expire(services, made.token.id)
     answer = client(required, made.secret).get("/runs")
@@ -86,6 +85,7 @@ def test_an_invalid_token_is_refused_with_its_field(api):
         {"scope": "everything"},
         {"expires_at": "2020-01-01T00:00:00Z"},
         {"expires_at": "2090-01-01T00:00:00"},
+        {"expires_at": "9999-12-31T23:59:59-05:00"},
     ):
         answer = api.post("tokens", json={"name": "dave", "scope": "read"} | change)
         assert fields(answer)[0] in change
@@ -101,38 +101,18 @@ def test_the_last_admin_token_is_not_revoked(required, client, admin):
     assert client(required, other["secret"]).get("/tokens").status_code == 200
 
 
-def test_the_last_use_of_a_token_is_coarse(rows, required, client, services, monkeypatch):
-    made = tokens.create(services, "erin", "read")
-    erin = client(required, made.secret)
-    erin.get("/runs")
-    (first,) = [row.last_used_at for row in rows() if row.name == "erin"]
-    assert first is not None
-    erin.get("/runs")
-    assert first in [row.last_used_at for row in rows()]
-    monkeypatch.setattr(tokens, "LAST_USED_INTERVAL", timedelta(0))
-    erin.get("/runs")
-    assert first not in [row.last_used_at for row in rows()]
-
-
 def test_a_run_belongs_to_the_token_that_submitted_it(owners, client, required, admin, spec):
     alice, bob = owners
-    run = alice.post("/runs", json=spec).json()
-    assert run["owner"] == "alice"
-    refused = detail(bob.post(f"/runs/{run['id']}/pause"), 403)
-    assert f"run {run['id']} belongs to `alice`" in refused
+    run = alice.post("/runs", json=spec).json()["id"]
+    refused = detail(bob.post(f"/runs/{run}/pause"), 403)
+    assert f"run {run} belongs to `alice`" in refused
     assert "you are `bob`" in refused
-    assert bob.get(f"/runs/{run['id']}").json()["owner"] == "alice"
-    assert alice.post(f"/runs/{run['id']}/pause").json()["status"] == "paused"
-    sweep = alice.post("/sweeps", json={"spec": spec}).json()
-    assert bob.get(f"/sweeps/{sweep['id']}").json()["owner"] == sweep["owner"] == "alice"
-    assert detail(bob.post("/shares", json={"run": run["id"]}), 403) == (
-        f"The run {run['id']} belongs to `alice`: only its owner or an admin may publish it; "
-        "you are `bob`."
-    )
-    for may in (alice, client(required, admin)):
-        answer = may.post("/shares", json={"run": run["id"]}).json()
-        assert answer["title"] == "Nothing to publish"
-    assert client(required, admin).post(f"/runs/{run['id']}/resume").status_code == 202
+    assert bob.get(f"/runs/{run}").json()["owner"] == "alice"
+    sweep = alice.post("/sweeps", json={"spec": spec}).json()["id"]
+    assert bob.get(f"/sweeps/{sweep}").json()["owner"] == "alice"
+    refused = detail(bob.post("/shares", json={"run": run}), 403)
+    assert "only its owner or an admin may publish it; you are `bob`" in refused
+    assert client(required, admin).post(f"/runs/{run}/pause").status_code == 202
 
 
 @pytest.fixture
@@ -153,21 +133,19 @@ def test_idempotency_keys_belong_to_a_token(owners, spec, noun):
 
 
 def test_only_admins_change_runs_without_an_owner(owners, client, required, admin, run_id):
-    bob = owners[1]
-    answer = bob.patch(f"/runs/{run_id}", json={"name": "mine"})
-    assert (answer.status_code, "was made without a token" in answer.text) == (403, True)
+    _, bob = owners
+    refused = bob.patch(f"/runs/{run_id}", json={"name": "mine"})
+    assert "was made without a token" in detail(refused, 403)
     named = client(required, admin).patch(f"/runs/{run_id}", json={"name": "x"})
     assert (named.status_code, named.json()["owner"]) == (200, None)
-    for path in ("/shares/%00", "/runs/%00", "/sweeps/%00/pause"):
-        method = "POST" if path.endswith("pause") else "DELETE"
-        assert bob.request(method, path).status_code in (404, 422), path
 
 
 def test_a_stream_ends_with_its_token(required, client, admin, services):
     made = tokens.create(services, "watcher", "read")
     with client(required, made.secret).stream("GET", "/events") as answer:
         lines = answer.iter_lines()
-        next(lines)
+        while next(lines):  # The event `start`.
+            pass
         client(required, admin).delete(f"/tokens/{made.token.id}")
         assert [line for line in lines if line.startswith("data")] == []
     assert client(required, made.secret).get("/events").status_code == 401
@@ -197,8 +175,6 @@ def test_bodies_of_anonymous_requests_are_limited_and_checked(required, client, 
         answer = page.post("/session", content=body)
         assert answer.status_code == status
         assert answer.headers["content-type"] == "application/problem+json"
-    other = {"Origin": "http://evil.example"}
-    assert page.post("/session", json={"token": admin}, headers=other).status_code == 403
 
 
 def test_loopback_still_checks_a_token_that_is_sent(api, services, spec):
@@ -230,6 +206,20 @@ def test_the_first_start_beyond_loopback_creates_an_admin_token(serve, services,
     assert tokens.principal_of(services, secret).scope == "admin"
 
 
+def test_a_first_token_that_cannot_be_kept_is_made_at_the_next_start(
+    rows, services, settings, tmp_path
+):
+    changes = {"host": "0.0.0.0", "data": tmp_path}
+    exposed = with_settings(services, settings.model_copy(update=changes))
+    (tmp_path / bootstrap.FILE).mkdir()
+    with pytest.raises(ValueError, match=r"first admin token must be writable; got "):
+        bootstrap.create_first_token(exposed)
+    assert rows() == []
+    (tmp_path / bootstrap.FILE).rmdir()
+    secret = bootstrap.create_first_token(exposed)
+    assert (tmp_path / bootstrap.FILE).read_text() == f"{secret}\n"
+
+
 def with_settings(services, settings):
     return replace(services, settings=settings)
 
@@ -246,37 +236,69 @@ def test_a_server_without_admins_does_not_listen(rows, services, settings, admin
     bootstrap.refuse_without_admin(exposed)
     tokens.revoke(services, rows()[0].id, last=True)
     for begin in (bootstrap.create_first_token, bootstrap.refuse_without_admin):
-        with pytest.raises(ValueError, match=r"python -m server\.auth create"):
+        with pytest.raises(ValueError, match=r"python -m microcosmos_server\.auth create"):
             begin(exposed)
 
 
 def test_tokens_are_made_and_revoked_on_the_command_line(
     services, settings, monkeypatch, capsys
 ):
-    monkeypatch.setattr(commands, "Settings", lambda: settings)
+    monkeypatch.setattr(commands, "from_environment", lambda: settings)
     commands.main(["create", "frank", "--scope", "admin", "--days", "1"])
     secret = capsys.readouterr().out.strip()
     assert tokens.principal_of(services, secret).name == "frank"
+    commands.main(["create", "eve\x1b[2J"])
+    capsys.readouterr()
     commands.main(["list"])
-    assert "frank\tadmin\t" + secret[:9] in capsys.readouterr().out
+    listed = capsys.readouterr().out
+    assert "frank\tadmin\t" + secret[:9] in listed
+    assert "eve\\u001b[2J\tread" in listed, "a name does nothing to the terminal"
     commands.main(["revoke", "frank"])
-    with pytest.raises(ProblemError, match="`frank` was revoked"):
+    with pytest.raises(DomainError, match="`frank` was revoked"):
         tokens.principal_of(services, secret)
     with pytest.raises(SystemExit, match="No live token is named 'frank'"):
         commands.main(["revoke", "frank"])
 
 
-@pytest.mark.parametrize("days", ["0", "-1", "1e9", "nan"])
-def test_a_token_on_the_command_line_ends_or_has_no_days(
-    days, services, settings, monkeypatch, capsys
+DAYS = "`days` must be above 0 and end before the year 10000"
+NAME = "`name` must have 1 to 64 characters"
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        # Zero days are not for ever.
+        *((("frank", f"--days={days}"), DAYS) for days in ("0", "-1", "1e9", "nan")),
+        *(((name,), NAME) for name in ("", " ", "a" * 65, "a\udcff")),
+    ],
+)
+def test_a_token_on_the_command_line_has_a_name_and_ends_or_has_no_days(
+    words, reason, services, settings, monkeypatch, capsys
 ):
-    """Zero days are not for ever."""
-    monkeypatch.setattr(commands, "Settings", lambda: settings)
+    monkeypatch.setattr(commands, "from_environment", lambda: settings)
     with pytest.raises(SystemExit):
-        commands.main(["create", "frank", f"--days={days}"])
-    assert "`days` must be above 0 and end before the year 10000" in capsys.readouterr().err
+        commands.main(["create", *words])
+    assert reason in capsys.readouterr().err
     with services.sessions.read() as session:
         assert not tokens.all_tokens(session)
-    commands.main(["create", "frank"])
-    secret = capsys.readouterr().out.strip()
-    assert tokens.principal_of(services, secret).scope == "read"
+
+
+@pytest.mark.parametrize(
+    ("url", "reason"),
+    [
+        ("", "there is no .*/mistyped/microcosmos.sqlite"),
+        ("foo://u:hunter2@x", "`database_url` must be postgresql"),
+        ("sqlite:////proc/none/x", "there is no /proc/none/x"),
+        ("sqlite:///{}/text", "The database does not answer: file is not a database"),
+    ],
+)
+def test_the_command_line_names_a_wrong_database_and_makes_none(
+    url, reason, tmp_path, monkeypatch
+):
+    (tmp_path / "text").write_text("no database")
+    monkeypatch.setenv("MICROCOSMOS_DATA", str(tmp_path / "mistyped"))
+    monkeypatch.setenv("MICROCOSMOS_DATABASE_URL", url.format(tmp_path))
+    with pytest.raises(SystemExit, match=reason) as caught:
+        commands.main(["list"])
+    assert "hunter2" not in str(caught.value)
+    assert not (tmp_path / "mistyped").exists()

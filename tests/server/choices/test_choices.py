@@ -7,8 +7,8 @@ from reports import creature_of
 
 from microcosmos.archive import choices as file
 from microcosmos.archive import creature
-from server.attempts import choices
-from server.tables import Run
+from microcosmos_server.attempts.attempt import begin_choices, forget_choices
+from microcosmos_server.tables import Run
 
 
 def name(number):
@@ -46,7 +46,7 @@ def read(api, run_id):
 
 
 def begins(attempt, generation):
-    return [one["sha256"] for one in choices.begin(attempt, generation)]
+    return [one["sha256"] for one in begin_choices(attempt, generation)]
 
 
 @pytest.mark.postgresql
@@ -78,13 +78,6 @@ def test_a_repeated_generation_reads_the_same_choices_and_no_new_ones(
     assert read() == [(3, name(1000)), (5, name(1001))]
 
 
-def test_the_same_choice_twice_is_one(begun, send, read):
-    send(1000)
-    assert read(send(1000, 1001)) == sorted([(None, name(1000)), (None, name(1001))])
-    begins(begun, 3)
-    assert (None, name(1000)) in read(send(1000)), "from a later generation, again"
-
-
 def test_a_choice_is_taken_back_until_its_generation_begins(begun, send, read, api, run_id):
     send(1000, 1001, 2000)
     path = f"runs/{run_id}/choices"
@@ -95,16 +88,6 @@ def test_a_choice_is_taken_back_until_its_generation_begins(begun, send, read, a
     send(1000)
     assert read(api.delete(path)) == read()
     assert (None, name(1000)) not in read()
-
-
-def test_what_is_chosen_while_a_run_is_paused_counts_when_it_goes_on(
-    begun, send, read, claim_run, api, run_id
-):
-    begun.save(2, b"state")
-    begun.pause()
-    send(1000)
-    assert api.post(f"runs/{run_id}/resume").status_code == 202
-    assert begins(claim_run(), 3) == [name(1000)]
 
 
 def test_only_creatures_of_the_run_can_be_chosen(begun, send, known, api, run_id, read):
@@ -124,7 +107,7 @@ def test_too_many_for_one_generation_are_refused(attempt, record, send, read):
 
 def test_a_run_that_begins_no_further_generation_refuses(begun, send, row, update_rows):
     begins(begun, row().generations)
-    assert "to breed from creatures of a run it must be" in detail(send(1000), 409)
+    assert "Cannot breed from creatures of this run: it is" in detail(send(1000), 409)
     update_rows(Run, begun_generation=2)
     begun.finish()
     assert "it is finished" in detail(send(1000), 409)
@@ -134,21 +117,13 @@ def test_searches_that_learn_from_all_offspring_refuse_and_say_why(
     begun, send, row, update_rows, api, run_id
 ):
     assert api.get(f"runs/{run_id}/choices").json()["refusal"] is None
-    search = row().spec["search"] | {"emitters": [{"operator": "lamarckian"}]}
+    search = row().spec["search"] | {"emitters": [{"operator": "population"}]}
     update_rows(Run, spec=row().spec | {"search": search})
     (error,) = errors(send(1000), 409)
     assert error["field"] == "search.emitters"
-    assert "got 'lamarckian', which learns from all of its offspring" in error["message"]
-    assert api.get(f"runs/{run_id}/choices").json()["refusal"] == error["message"]
-
-
-def test_the_log_says_who_was_chosen_and_when_they_count(begun, send, api, run_id):
-    send(1000)
-    begins(begun, 3)
-    texts = [one["text"] for one in api.get(f"runs/{run_id}/log").json()["entries"]]
-    short = name(1000)[:8]
-    assert f"Chosen to breed from the next generation on: {short}." in texts
-    assert f"Generation 3 begins to descend from chosen creatures: {short}." in texts
+    assert "got 'population', which learns from all of its offspring" in error["reason"]
+    refusal = api.get(f"runs/{run_id}/choices").json()["refusal"]
+    assert refusal == f"`{error['field']}` {error['reason']}"
 
 
 def test_the_export_holds_what_counts_with_the_creatures(begun, send, api, run_id):
@@ -165,7 +140,7 @@ def test_the_export_holds_what_counts_with_the_creatures(begun, send, api, run_i
 def test_choices_that_the_run_no_longer_has_are_forgotten(begun, send, read, api, run_id):
     send(1000, 1001)
     begins(begun, 3)
-    choices.forget(begun, 3, [name(1000)])
+    forget_choices(begun, 3, [name(1000)])
     assert read() == [(3, name(1001))]
     (*_, last) = api.get(f"runs/{run_id}/log").json()["entries"]
     assert last["level"] == "warning"
@@ -175,6 +150,7 @@ def test_choices_that_the_run_no_longer_has_are_forgotten(begun, send, read, api
 def test_a_purged_run_leaves_no_choices_and_no_creatures(begun, send, services, api, run_id):
     send(1000)
     begins(begun, 3)
+    api.post(f"runs/{run_id}/cancel")
     begun.cancel()
     assert row_counts(services)["choices"] == 1
     delete_for_good(api, services, run_id)

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from relay import Relay
 
-from microcosmos.client import Client, connection, files, streaming
+from microcosmos.client import Client, connection, files, polling
 
 
 @pytest.fixture
@@ -36,6 +36,6 @@ def relay(address: str) -> Iterator[Relay]:
 def no_sleep(monkeypatch) -> list[float]:
     """Notes pauses instead of sleeping."""
     pauses: list[float] = []
-    for module in (connection, files, streaming):
+    for module in (connection, files, polling):
         monkeypatch.setattr(module.time, "sleep", pauses.append)
     return pauses

@@ -4,6 +4,7 @@ import errno
 import hashlib
 import os
 import socket
+from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
@@ -15,11 +16,10 @@ from microcosmos.client import (
     NoAnswer,
     NotMicrocosmos,
     ServerError,
-    connection,
     files,
-    streaming,
+    polling,
 )
-from server.attempts.claim import claim
+from microcosmos_server.attempts.claim import claim
 
 
 def test_a_request_whose_answer_is_lost_is_repeated_safely(relay, services, spec, no_sleep):
@@ -45,8 +45,8 @@ def test_unsafe_requests_are_not_repeated(relay, run, no_sleep):
 
 def test_events_continue_after_the_last_id(relay, run_id, record, attempt):
     client = Client(relay.url)
-    found = streaming.events(client.connection, str(run_id))
-    assert next(found).kind == "beat"  # From here on.
+    found = polling.events(client.connection, str(run_id))
+    assert next(found).kind == "start"  # From here on.
     generations: list[int] = []
     for generation in range(1, 7):
         record(generation, seconds=float(generation))
@@ -72,21 +72,6 @@ def test_an_absent_server_is_answered_with_advice(no_sleep):
 HTML = {"Content-Type": "text/html"}
 
 
-@pytest.mark.parametrize(
-    ("answer", "message"),
-    [
-        ((200, HTML, b"<h1>Log in</h1>"), "answers 200 OK with a web page"),
-        ((404, HTML, b"<h1>nginx</h1>"), "as no Microcosmos server does"),
-        ((404, {"Content-Type": "application/json"}, b"{}"), "404 Not Found"),
-        ((302, {"Location": "https://sso.example/"}, b""), "redirects to https://sso.example/"),
-        ((200, {"Content-Type": "application/json"}, b"{"), "as no Microcosmos server does"),
-    ],
-)
-def test_a_foreign_server_is_recognised(answer, message, no_sleep):
-    with foreign_server(answer) as (url, _), pytest.raises(NotMicrocosmos, match=message):
-        list(Client(url).runs())
-
-
 PROBLEM = {"Content-Type": "application/problem+json"}
 
 
@@ -98,20 +83,13 @@ def test_a_busy_server_is_asked_again_after_its_delay(no_sleep):
     assert (no_sleep, asked) == ([2.0, 2.0], ["GET"] * 3)
 
 
-def test_patience_includes_the_length_of_silences(no_sleep, monkeypatch):
-    clock, asked = [0.0], []
-
-    def silent(request: httpx.Request) -> httpx.Response:
-        asked.append(request)
-        clock[0] += 20.0
-        raise httpx.ReadTimeout("nothing came")
-
-    monkeypatch.setattr(connection.time, "monotonic", lambda: clock[0])
-    client = Client("http://box", patience=30.0, transport=httpx.MockTransport(silent))
-    client.connection.answered = True
-    with pytest.raises(NoAnswer, match="did not answer in time"):
-        list(client.runs())
-    assert len(asked) == 2
+@pytest.mark.parametrize("delay", ["soon", "Tue, 03 Jun 2008 11:05:30 +99999999999999999"])
+def test_a_delay_that_is_none_counts_for_nothing(delay, no_sleep):
+    empty = (200, {"Content-Type": "application/json"}, b'{"items": [], "next": null}')
+    busy = (503, PROBLEM | {"Retry-After": delay}, b'{"detail": "No."}')
+    with foreign_server(busy, empty) as (url, asked):
+        assert list(Client(url).runs()) == []
+    assert (len(no_sleep), asked) == (1, ["GET"] * 2)
 
 
 def test_patience_ends_with_the_servers_own_words(no_sleep):
@@ -133,7 +111,7 @@ def test_patience_ends_with_the_servers_own_words(no_sleep):
         (500, b"{", ServerError, "answered 500 without a reason"),
         (
             422,
-            b'{"detail": "No.", "errors": [{"field": "a.b", "message": "needs 1"}]}',
+            b'{"detail": "No.", "errors": [{"field": "a.b", "reason": "needs 1"}]}',
             ServerError,
             r"No; a\.b: needs 1\.",
         ),
@@ -154,9 +132,55 @@ def test_addresses_are_normalised_and_malformed_ones_refused():
         "http://127.0.0.1:8000/api/v1/": "http://127.0.0.1:8000",
     }.items():
         assert Client(given).url == meant
-    for malformed in ("ftp://x", "http://", "http://x:99999"):
+    malformed = ("ftp://x", "http://", "http://x:99999", "999.1.1.1:8000", "a..b", "a\x01b")
+    for given in malformed:
         with pytest.raises(ValueError, match="`url` must be an address"):
-            Client(malformed)
+            Client(given)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        *("http://bob:hunter2@box", "bob:hunter2@box:9/runs?x", "http:/bob:hunter2@box"),
+        *("http://bob:x/hunter2@box", "http://bob:x#hunter2@box", "https:///bob:hunter2@box"),
+    ],
+)
+def test_an_address_with_a_password_is_refused_and_not_shown(given):
+    """Links and errors would show it, and the library would send it in place of the token."""
+    with pytest.raises(ValueError, match=r"`url` must be an address") as caught:
+        Client(given, "token")
+    assert "hunter2" not in str(caught.value)
+
+
+@pytest.mark.parametrize("token", ["abcsecret\r", "secret\n", "sécret", "my secret"])
+def test_a_token_that_no_header_can_carry_is_refused_and_not_shown(token):
+    with pytest.raises(ValueError, match="`token` must be ASCII letters") as caught:
+        Client("http://box", token)
+    assert "ecret" not in str(caught.value)
+    assert caught.value.__cause__ is None
+
+
+@pytest.mark.parametrize("proxy", ["foo:bar", "foo://u:hunter2@x", "http://1.2.3.999"])
+def test_a_malformed_proxy_is_named_without_its_password(proxy, monkeypatch):
+    monkeypatch.setenv("HTTP_PROXY", proxy)
+    with pytest.raises(ValueError, match=r"HTTP_PROXY.*must be addresses") as caught:
+        Client("http://box")
+    assert "hunter2" not in str(caught.value)
+
+
+def test_an_answer_that_is_not_compressed_as_it_says_is_foreign(tmp_path):
+    """For lists, events and downloads."""
+    headers = {"Content-Encoding": "gzip"}
+    for status in (200, 500):
+        with foreign_server((status, headers, b"no gzip")) as (url, _):
+            client = Client(url)
+            with pytest.raises(NotMicrocosmos, match="not in the encoding"):
+                list(client.runs())
+            with pytest.raises(NotMicrocosmos, match="not in the encoding"):
+                next(client.events())
+            expected = "without its hash" if status == 200 else "not in the encoding"
+            with pytest.raises(NotMicrocosmos, match=expected):
+                files.fetch(client.connection, "x", tmp_path / "x")
 
 
 def test_loopback_requests_bypass_the_proxy(address, monkeypatch):
@@ -195,20 +219,22 @@ def test_a_download_goes_on_where_it_broke_off(relay, run_id, archive, tmp_path,
     assert b"If-None-Match" in relay.asked[-1]  # Nothing is fetched twice.
 
 
-def test_an_abandoned_download_is_continued_later(relay, run_id, archive, tmp_path, no_sleep):
-    run = Client(relay.url).run(str(run_id))
-    relay.cut()
-    relay.allowance = [1_000_000] + [50] * 20
-    to = tmp_path / "run.h5"
-    with pytest.raises(NoAnswer, match="broke off"):
-        run.pull(to)
-    (part,) = tmp_path.glob(".run.h5.*.part")
-    had = part.stat().st_size
-    assert 0 < had < len(archive)
-    relay.allowance = []
-    relay.asked.clear()
-    assert run.pull(to).read_bytes() == archive
-    assert f"bytes={had}-".encode() in b"".join(relay.asked)
+def test_downloads_of_one_file_at_once_take_turns(client, run_id, archive, tmp_path):
+    to, link = tmp_path / "run.h5", tmp_path / "link.h5"
+    link.symlink_to(to)
+    with ThreadPoolExecutor(6) as pool:
+        runs = [client.run(str(run_id))] * 6
+        found = list(pool.map(lambda run, path: run.pull(path), runs, [to, link] * 3))
+    assert found == [to, link] * 3
+    assert (to.read_bytes(), link.is_symlink()) == (archive, True)
+    assert set(tmp_path.iterdir()) == {to, link}
+
+
+def test_a_pipe_is_not_replaced_by_a_download(client, run_id, archive, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(FileExistsError, match="a file is needed, got"):
+        client.run(str(run_id)).pull(tmp_path / "pipe")
+    assert (tmp_path / "pipe").is_fifo()
 
 
 def test_partial_files_are_used_only_if_intact(client, run_id, archive, tmp_path):
@@ -227,18 +253,6 @@ def test_partial_files_are_used_only_if_intact(client, run_id, archive, tmp_path
     to.unlink()
     part.write_bytes(archive)
     assert run.pull(to).read_bytes() == archive, "a complete part is moved into place"
-
-
-def test_a_download_without_a_length_succeeds(no_sleep, tmp_path):
-    name = hashlib.sha256(b"whole").hexdigest()
-
-    def chunked(request: httpx.Request) -> httpx.Response:
-        return httpx.Response(200, headers={"etag": f'"{name}"'}, content=iter([b"wh", b"ole"]))
-
-    client, progress = Client("http://box", transport=httpx.MockTransport(chunked)), []
-    files.fetch(client.connection, "x", tmp_path / "x", lambda *so_far: progress.append(so_far))
-    assert (tmp_path / "x").read_bytes() == b"whole"
-    assert progress == [(0, 0), (5, 5)]
 
 
 def test_a_full_disk_is_reported_with_the_file(no_sleep, tmp_path, monkeypatch):

@@ -5,8 +5,8 @@ from threading import Event
 
 import pytest
 
-from server.core.answers import AnswerCache
-from server.core.errors import ProblemError
+from microcosmos_server.core.answers import AnswerCache
+from microcosmos_server.core.errors import DomainError, Invalid
 
 
 def never():
@@ -38,7 +38,7 @@ def test_an_error_reaches_all_who_wait_and_is_not_kept():
 
     def fail():
         assert go.wait(60)
-        raise ProblemError(422, "Refused", "It cannot be made.")
+        raise Invalid("It cannot be made.")
 
     async def use():
         cache = AnswerCache(10)
@@ -46,7 +46,7 @@ def test_an_error_reaches_all_who_wait_and_is_not_kept():
         await asyncio.sleep(0)
         go.set()
         found = await asyncio.gather(*waiting, return_exceptions=True)
-        assert all(isinstance(one, ProblemError) for one in found)
+        assert all(isinstance(one, DomainError) for one in found)
         assert await get(cache, "a", b"good") == b"good"
         cache.close()
 
@@ -81,7 +81,7 @@ def test_more_answers_than_may_wait_are_refused():
             asyncio.create_task(cache.get(tag, lambda: go.wait(60) and b"made")) for tag in "ab"
         ]
         await asyncio.sleep(0)
-        with pytest.raises(ProblemError) as refused:
+        with pytest.raises(DomainError) as refused:
             await get(cache, "c", b"c")
         assert refused.value.problem.status == 503
         go.set()

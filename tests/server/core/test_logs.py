@@ -2,26 +2,21 @@
 
 import json
 import logging
-import os
+import shutil
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from uuid import uuid4
 
 import httpx
 import pytest
+from real_server import started
 
-from server.auth import tokens
-from server.core import logs
-from server.core.logs import Json, Plain, redacted
-from server.local.log_rotation import OLDER_PARTS, rotate
-from server.local.redis_embedded import free_port
-from server.settings import Settings
+from microcosmos_server.auth import tokens
+from microcosmos_server.core import logs
+from microcosmos_server.core.logs import Json, Plain, redacted
+from microcosmos_server.local.launcher import OLDER_PARTS, rotate
+from microcosmos_server.settings import Settings
 
-ROOT = Path(__file__).parents[3]
 ADMIN = "an-admin-token-of-this-test"
 WRITER = """
 import sys
@@ -73,52 +68,38 @@ def test_secrets_are_in_no_line(services):
         f"connecting to {settings.database_url}",
         "http://somebody:else@host/path",
         "hunter2 by itself",
+        "the store has lost shares/abcd-efgh_ijklmnop.h5",
     )
     for form in (Json(known), Plain(known)):
         lines = [form.format(record(text)) for text in texts]
         lines.append(form.format(record("failed", exc_info=failed)))
-        for hidden in (secret, ADMIN, "p4ssw0rd", "hunter2", "anything-else", "somebody:else"):
+        for hidden in (
+            secret,
+            ADMIN,
+            "p4ssw0rd",
+            "hunter2",
+            "anything-else",
+            "somebody:else",
+            "efgh",
+        ):
             assert not [line for line in lines if hidden in line]
         assert secret[: tokens.PREVIEW_LENGTH] in lines[0]
     assert redacted("http://host:80/a@b", ()) == "http://host:80/a@b"
 
 
-@contextmanager
-def server(folder: Path, port: int) -> Iterator[httpx.Client]:
-    environment = {
-        "MICROCOSMOS_DATA": str(folder),
+def test_a_server_logs_requests_as_json_with_their_ids(tmp_path):
+    run = str(uuid4())
+    settings = {
+        "MICROCOSMOS_DATA": str(tmp_path),
         "MICROCOSMOS_LOG_FORMAT": "json",
         "MICROCOSMOS_TOKEN": ADMIN,
         "MICROCOSMOS_REDIS_URL": "redis://:p4ssw0rd@127.0.0.1:1/0",
-        "PORT": str(port),
     }
-    with (folder / "log").open("wb") as log:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "server.main"],
-            cwd=ROOT,
-            env=os.environ | environment,
-            stdout=log,
-            stderr=log,
-        )
-    try:
-        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=30) as client:
-            deadline = time.monotonic() + 60
-            while True:
-                try:
-                    client.get("/healthz")
-                    break
-                except httpx.TransportError:
-                    assert time.monotonic() < deadline, (folder / "log").read_text()
-                    time.sleep(0.1)
-            yield client
-    finally:
-        process.terminate()
-        process.wait()
-
-
-def test_a_server_logs_requests_as_json_with_their_ids(tmp_path):
-    run = str(uuid4())
-    with server(tmp_path, free_port()) as client:
+    with (
+        (tmp_path / "log").open("wb") as log,
+        started(log, **settings) as (_, address),
+        httpx.Client(base_url=address, timeout=30) as client,
+    ):
         client.headers["Authorization"] = f"Bearer {ADMIN}"
         made = client.get(f"/api/v1/runs/{run}").headers["X-Request-ID"]
         kept = client.get("/healthz", headers={"X-Request-ID": "of-a-proxy.1"})
@@ -160,6 +141,29 @@ def test_a_long_log_is_rotated_under_its_writer(tmp_path):
         first = 1000 * (OLDER_PARTS + 2 - age)
         lines = (tmp_path / name).read_text().splitlines()
         assert lines == [f"line {number:05d}" for number in range(first, first + 1000)]
+
+
+def test_a_full_disk_loses_no_older_part_of_a_log(tmp_path, monkeypatch, capsys):
+    for name in ("a.log", "b.log"):
+        (tmp_path / name).write_text("new" * 9)
+        (tmp_path / f"{name}.1").write_text("old")
+
+    copied = shutil.copyfile
+
+    def full(source, target):
+        if source.name == "a.log":
+            target.write_text("n")
+            raise OSError(28, "No space left on device")
+        copied(source, target)
+
+    monkeypatch.setattr(shutil, "copyfile", full)
+    rotate(tmp_path, 9)
+    assert {path.name: path.read_text() for path in tmp_path.glob("a*")} == {
+        "a.log": "new" * 9,
+        "a.log.1": "old",
+    }
+    assert (tmp_path / "b.log.2").read_text() == "old", "the others are rotated"
+    assert "a.log cannot be rotated and keeps growing" in capsys.readouterr().out
 
 
 @pytest.fixture(autouse=True)

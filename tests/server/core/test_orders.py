@@ -6,15 +6,14 @@ import pytest
 import reports
 from sqlalchemy import event, select, text
 
-from server.runs import listing, log
-from server.runs.submission import submit
-from server.shares import routes as shares
-from server.sweeps import routes as sweeps
-from server.tables import Run, Share, Sweep
+from microcosmos_server.runs import log, routes
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.shares import routes as shares
+from microcosmos_server.sweeps import routes as sweeps
+from microcosmos_server.tables import Run, Share, Sweep
 
 RUNS = [
-    (listing.order(sort), listing.matching([], [], None, None))
-    for sort in get_args(listing.Sort)
+    (routes.order(sort), routes.matching([], [], None, None)) for sort in get_args(routes.Sort)
 ]
 OTHERS = [(shares.NEWEST_FIRST, select(Share)), (sweeps.NEWEST_FIRST, select(Sweep))]
 
@@ -67,7 +66,7 @@ def test_a_page_of_a_list_needs_no_sort(plans, order, statement):
 def test_a_later_page_begins_in_the_index(plans, services, update_rows):
     for best in (None, None, 1.0, 2.0):
         update_rows(Run, Run.id == submit(services, reports.DEMO)[0].id, best=best)
-    order, statement = listing.order("-best"), listing.matching([], [], None, None)
+    order, statement = routes.order("-best"), routes.matching([], [], None, None)
     pages, cursor = [], None
     with services.sessions.read() as session:
         while not pages or cursor:
@@ -76,6 +75,21 @@ def test_a_later_page_begins_in_the_index(plans, services, update_rows):
     assert [best for best, _ in pages] == [2.0, 1.0, None, None]
     (plan, _) = plans(lambda session: order.page(session, statement, pages[0][1], 2))
     assert "Index Cond: ((best IS NOT NULL) AND (ROW(best, id) <" in plan
+
+
+@pytest.mark.parametrize("path", ["runs", "sweeps", "shares", "commons"])
+def test_a_list_has_pages_newest_first(api, spec, known, path):
+    noun, key = ("shares", "slug") if path in ("shares", "commons") else (path, "id")
+    made = []
+    for seed in range(3):
+        sent = {"runs": spec | {"seed": seed}, "sweeps": {"spec": spec}}
+        share = {"creature": known, "title": f"{seed}", "listed": True}
+        made.append(api.post(noun, json=sent.get(noun, share)).json()[key])
+    first = api.get(path, params={"limit": 2}).json()
+    rest = api.get(path, params={"limit": 2, "cursor": first["next"]}).json()
+    assert [one[key] for one in first["items"] + rest["items"]] == made[::-1]
+    assert (len(first["items"]), rest["next"]) == (2, None)
+    assert api.get(path, params={"cursor": "x"}).status_code == 422
 
 
 def test_the_log_of_a_run_needs_no_sort(plans, run_id):

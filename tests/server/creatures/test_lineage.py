@@ -57,17 +57,6 @@ def digests(begin, count):
     return [f"{begin + i:064x}" for i in range(count)]
 
 
-@pytest.mark.parametrize("depth", [1, 2, 32])
-def test_at_most_200_ancestors_are_listed(api, upload_child, depth):
-    parents = digests(0, 201)
-    child = upload_child(1, *parents)
-    found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
-    assert (names(found), found["more"]) == (parents[:200], True)
-    child = upload_child(2, *parents[:200])
-    found = api.get(f"creatures/{child}/ancestors", params={"depth": depth}).json()
-    assert (names(found), found["more"]) == (parents[:200], False)
-
-
 def test_the_order_of_parents_decides_which_ancestors_are_listed(api, upload_child):
     older = {1: digests(0, 150), 2: digests(1000, 150)}
     one, two = upload_child(1, *older[1]), upload_child(2, *older[2])
@@ -137,33 +126,6 @@ def test_a_creature_as_hdf5_is_complete_and_always_the_same_bytes(api, upload_ch
     with h5py.File(BytesIO(answer.content), "r") as file:
         weights: Any = file["genome/connections/weight"]
         assert weights[:] == [3.0]
-
-
-def test_measures_of_any_name_survive_every_format(api, identity, upload_child):
-    measures = {"displacement": 0.5, "": 1.0, ".": 2.0, "a": 3.0, "a/b": 4.0, "fitness": 5.0}
-    measured = {
-        "fitness": 0.5,
-        "descriptors": {"a": 3.0, "a/b": 4.0},
-        "measures": {**measures, "..": 6.0, "%": 7.0, "x" * 200: 8.0, "é\n": 9.0},
-        "block": 16,
-        "room": [24, 64],
-        "device": "/",
-    }
-    parent = upload_child(2)
-    origin = {"parents": [parent], "operator": "a/b", "generation": 1, "seed": 0}
-    file = creature.document(identity(1), measured, {**origin, "version": ""})
-    sent = api.post("creatures", json=file)
-    assert sent.status_code == 201, sent.text
-    name = sent.json()["creature"]
-    assert api.get(f"creatures/{name}").json()["measured"] == measured
-    answer = api.get(f"creatures/{name}/creature.h5")
-    assert answer.status_code == 200
-    assert creature_h5.load(answer.content)["measured"] == measured
-    with h5py.File(BytesIO(answer.content), "r") as found:
-        fitness: Any = found["measured/fitness"]
-        assert fitness[()] == 0.5
-    (child,) = api.get(f"creatures/{parent}/children").json()["items"]
-    assert (child["creature"], child["fitness"]) == (name, 0.5)
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,14 @@ from deletion import delete_for_good, files, finish, let_time_pass, row_counts, 
 from sqlalchemy import select
 
 from microcosmos.archive import creature
-from server.attempts.claim import claim
-from server.deletion import bin, purge
-from server.maintenance.reconcile import reconcile
-from server.renderings.storage import existing, save
-from server.tables import (
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.deletion import purge
+from microcosmos_server.maintenance.reconcile import reconcile
+from microcosmos_server.notifications import outbox
+from microcosmos_server.renderings.storage import existing, save
+from microcosmos_server.runs import lifecycle
+from microcosmos_server.storage import garbage
+from microcosmos_server.tables import (
     GIF,
     REPLAY,
     Artifact,
@@ -42,19 +45,31 @@ def test_a_deleted_run_is_hidden_and_restored_unchanged(api, services, run_id, r
         assert answer.status_code == 404, path
     answer = api.get(f"runs/{run_id}/archive")
     assert "is in the bin until" in answer.json()["detail"]
-    for action in ("resume", "cancel", "extend"):
-        sent = {"json": {"generations": 1}} if action == "extend" else {}
-        assert api.post(f"runs/{run_id}/{action}", **sent).status_code == 404
+    bodies = {"extend": {"generations": 1}, "fork": {"from": {"archive": True}}}
+    for action in ("resume", "cancel", "extend", "fork"):
+        answer = api.post(f"runs/{run_id}/{action}", json=bodies.get(action))
+        assert answer.status_code == 404
     assert api.post(f"runs/{run_id}/restore").json() == before
     assert api.get("runs?deleted=true").json()["items"] == []
     assert api.get(f"runs/{run_id}/archive").json()["cell"] == [0]
+
+
+def test_an_event_that_waits_for_the_webhook_outlives_its_run(api, services, run_id):
+    claim(services, run_id, "worker").refuse("ValueError: 3 is no body")
+    delete_for_good(api, services, run_id)
+    one = outbox.take(services)
+    assert (one.run_id, one.kind) == (run_id, "run.failed")
+    assert outbox.take(services) is None
 
 
 def test_only_idle_runs_are_deleted_and_restored_in_time(api, services, run_id):
     attempt = None
     for status in ("queued", "running"):
         refused = detail(api.delete(f"runs/{run_id}"), 409)
-        assert f"cancel it first; it is {status}" in refused
+        assert refused.endswith(
+            "it must be finished, failed, cancelled or paused: cancel it first"
+        )
+        assert f"it is {status}; " in refused
         attempt = attempt or claim(services, run_id, "worker")
     api.post(f"runs/{run_id}/pause")
     attempt.pause()
@@ -108,7 +123,7 @@ def test_a_purge_leaves_no_row_or_file(api, services, spec, report, run_id):
     attempt.save(1, b"one")
     attempt.record(report(2, {2: 1.0}), 1.0)
     again = claim(services, doomed, "worker")  # What was rewound counts as the run's too.
-    again.record(report(2, {0: 3.0}), 1.0)
+    again.record(report(2, {0: 3.0}, emptied=(1,)), 1.0)
     again.save(2, b"two")
     again.finish()
     named = set(api.get(f"runs/{doomed}/archive/history").json()["creature"])
@@ -161,15 +176,15 @@ def test_a_purge_keeps_what_others_use(api, services, spec, report, identity, ch
 def test_a_purge_may_be_killed_anywhere(api, services, spec, report, run_id, monkeypatch):
     """Stop it after every transaction. A partly purged run cannot be restored."""
     monkeypatch.setattr(purge, "ROWS_PER_TRANSACTION", 2)
-    monkeypatch.setattr("server.deletion.garbage.CREATURES_PER_TRANSACTION", 2)
+    monkeypatch.setattr("microcosmos_server.deletion.purge.CREATURES_PER_TRANSACTION", 2)
     before = row_counts(services), files(services)
     doomed = submit_another(services, spec, 3)
     finish(services, doomed, *(report(g, {0: g, 1: g, 2: g}) for g in range(1, 4)))
     api.delete(f"runs/{doomed}")
     let_time_pass(services, doomed)
-    passes = 0
+    passes, steps = 0, (purge.purge_rows, purge.collect_creatures, purge.remove_files)
     while (row_counts(services), files(services)) != before:
-        purge.purge(services, steps=1)
+        any(step(services) for step in steps)
         assert api.post(f"runs/{doomed}/restore").status_code in (404, 409)
         passes += 1
         assert passes < 100
@@ -190,6 +205,41 @@ def test_a_file_that_cannot_be_removed_is_removed_later(
     reconcile(services)
     assert files(services) == []
     assert row_counts(services)["garbage_files"] == 0
+
+
+def test_a_pass_ends_in_time_and_the_next_one_continues(services, monkeypatch):
+    monkeypatch.setattr(purge, "SECONDS", 0.0)
+    monkeypatch.setattr(garbage, "FILES_PER_STEP", 2)
+    for number in range(5):
+        services.artifacts.write(f"shares/{number}.h5", b"")
+    with services.sessions.write.begin() as session:
+        garbage.discard(session, [f"shares/{number}.h5" for number in range(5)])
+    for left in (3, 1, 0):
+        purge.purge(services)
+        assert len(files(services)) == row_counts(services)["garbage_files"] == left
+
+
+@pytest.mark.parametrize("local", [True, False])
+def test_files_that_cannot_be_removed_do_not_keep_others(services, monkeypatch, local):
+    """An object store may lock some of its objects."""
+    monkeypatch.setattr(garbage, "FILES_PER_STEP", 2)
+    remove = services.artifacts.delete
+
+    def refuse_some(path):
+        if path.startswith("shares/locked"):
+            raise PermissionError(path)
+        remove(path)
+
+    names = [f"shares/{name}.h5" for name in ("locked-1", "locked-2", "x", "y", "z")]
+    for name in names:
+        services.artifacts.write(name, b"")
+    with services.sessions.write.begin() as session:
+        garbage.discard(session, names)
+    monkeypatch.setattr(services.artifacts, "delete", refuse_some)
+    monkeypatch.setattr(services.artifacts, "local", local)
+    for _ in range(3):
+        purge.purge(services)
+    assert files(services) == names[:2]
 
 
 def drawn(services):
@@ -219,8 +269,8 @@ def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(
     let_time_pass(services, run_id)
     with services.sessions.write.begin() as session:
         run = session.get_one(Run, run_id)
-        with pytest.raises(Exception, match="to restore a run"):
-            bin.restore(session, run)
+        with pytest.raises(Exception, match="Cannot restore this run"):
+            lifecycle.restore(session, run)
     assert purge.purge_rows(services)
 
 

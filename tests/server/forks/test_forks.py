@@ -3,6 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 from uuid import UUID
 
+import httpx
 import pytest
 import reports
 from answers import detail, fields
@@ -11,10 +12,11 @@ from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos.spec import parse
-from server.attempts.claim import claim
-from server.forks import forking
-from server.runs.submission import submit
-from server.tables import InitialCreature
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.core import database
+from microcosmos_server.forks import routes
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.tables import InitialCreature
 
 
 @pytest.fixture
@@ -73,23 +75,17 @@ def test_a_fork_takes_the_spec_with_the_patch(fork, api, ended, services, identi
     assert creature.parse(file)["sha256"] == names(identity, 1001)[0]
 
 
-def test_null_resets_a_field_to_its_default(fork):
-    run = fork({"archive": True}, spec={"control": {"period": None}}).json()
-    assert run["spec"]["control"]["period"] != 50
-
-
 def test_null_clears_an_optional_field():
-    """The form sends null for rest lengths that are not driven; the default drives them."""
-    grown = {"experiment": "quality-diversity", "control": {"encoding": "cppn-body"}}
-    before = parse(grown).model_dump(mode="json")
+    """The form sends null for a bend that is not limited; the default limits it."""
+    before = parse({"experiment": "quality-diversity"}).model_dump(mode="json")
     patch = {
-        "control": {"rest_length": None, "period": None, "nobody": None},
+        "control": {"max_bend": None, "period": None, "nobody": None},
         "search": {"stop": None},
     }
-    document = forking.with_nulls(forking.patched(before, patch), before, patch, parse)
+    document = routes.with_nulls(routes.patched(before, patch), before, patch, parse)
     spec = parse(document).model_dump(mode="json")
-    assert before["control"]["rest_length"] is not None
-    assert spec == {**before, "control": {**before["control"], "rest_length": None}}
+    assert before["control"]["max_bend"] is not None
+    assert spec == {**before, "control": {**before["control"], "max_bend": None}}
     assert "period" not in document["control"]
 
 
@@ -103,7 +99,7 @@ def test_null_clears_an_optional_field():
         ({"region": {"bending_effort": [7, 8]}}, {}, "from.region"),
         ({"creatures": ["ab" * 32]}, {}, "search.initial"),
         ({"archive": True}, {"world": {"viscosity": -1}}, "world.viscosity"),
-        ({"archive": True}, {"control": {"timer": "linear"}}, "control: inputs"),
+        ({"archive": True}, {"control": {"timer": "linear"}}, "control.inputs"),
         ({"archive": True}, {"experiment": "gaits"}, "experiment"),
     ],
 )
@@ -114,12 +110,15 @@ def test_an_invalid_fork_is_refused_with_its_field(fork, api, start, spec, field
     assert len(api.get("runs").json()["items"]) == 1
 
 
-def test_the_same_key_is_the_same_fork(fork):
-    headers = {"Idempotency-Key": "a key"}
-    first, second = (fork({"cells": [1]}, headers=headers) for _ in range(2))
-    assert (first.status_code, second.status_code) == (202, 200)
-    assert first.json()["id"] == second.json()["id"]
-    assert fork({"cells": [2]}, headers=headers).status_code == 422
+def test_a_generation_that_the_run_does_not_have_is_refused(fork, api, ended):
+    named = {"creatures": ["ab" * 32]}
+    answers = [fork(start, generation=4) for start in ({"archive": True}, named)]
+    path = f"runs/{ended}/archive"
+    answers.append(api.get(path, params={"generation": 4}))
+    answers.append(api.get(f"{path}/poses", params={"generation": 4, "cells": "1"}))
+    for answer in answers:
+        assert detail(answer, 422).startswith("generation: needs at most 3, the run's last")
+    assert api.get(path, params={"generation": 3}).json()["generation"] == 3
 
 
 def test_the_same_key_is_the_same_fork_after_more_generations(api, run_id, attempt, record):
@@ -157,22 +156,6 @@ def test_initial_creatures_of_a_fork_outlive_their_run(fork, api, services, ende
     assert api.get(f"creatures/{kept}").status_code == 404
     with services.sessions.read() as session:
         assert session.scalars(select(InitialCreature.creature)).all() == []
-
-
-def test_a_run_in_the_bin_is_not_forked(fork, api, ended):
-    api.delete(f"runs/{ended}")
-    assert fork({"archive": True}).status_code == 404
-
-
-def test_a_fork_is_restored_after_its_source_is_purged(fork, api, services, ended, identity):
-    forked = UUID(fork({"cells": [1]}).json()["id"])
-    api.post(f"runs/{forked}/pause")
-    api.delete(f"runs/{forked}")
-    delete_for_good(api, services, ended)
-    api.post(f"runs/{forked}/restore")
-    assert api.post(f"runs/{forked}/resume").json()["status"] == "queued"
-    (file,) = claim(services, forked, "worker").initial()
-    assert file["sha256"] == names(identity, 1001)[0]
 
 
 @pytest.fixture
@@ -215,6 +198,15 @@ def test_a_finished_run_is_queued_again_and_goes_on_where_it_ended(
     assert "Extended by 3 generations to 7: queued again." in texts
 
 
+def test_a_longer_run_needs_the_memory_of_one_that_long(api, run_id, spec, row, end):
+    end(4)
+    before = row().memory_bytes
+    assert extended(api, run_id, 100_000).status_code == 202
+    spec["search"]["generations"] = 4 + 100_000
+    needed = api.post("runs/estimate", json=spec).json()["memory_bytes"]
+    assert row().memory_bytes == needed > before
+
+
 @pytest.mark.postgresql
 def test_one_of_many_concurrent_extensions_succeeds(api, run_id, row, end):
     end(2)
@@ -223,7 +215,8 @@ def test_one_of_many_concurrent_extensions_succeeds(api, run_id, row, end):
     assert sorted(answer.status_code for answer in answers) == [202] + 7 * [409]
     assert row().generations == 5
     refused = next(answer for answer in answers if answer.status_code == 409)
-    assert refused.json()["detail"] == "to extend a run it must be finished; it is queued"
+    expected = "Cannot extend this run: it is queued; it must be finished"
+    assert refused.json()["detail"] == expected
 
 
 def extended(api, run_id, generations=1):
@@ -231,15 +224,12 @@ def extended(api, run_id, generations=1):
 
 
 def test_only_a_finished_run_short_of_its_goal_is_extended(api, run_id, end):
-    queued = "to extend a run it must be finished; it is queued"
+    queued = "Cannot extend this run: it is queued; it must be finished"
     assert detail(extended(api, run_id), 409) == queued
-    end(2, summary={"ended": "fitness after generation 2"})
-    assert "(fitness after generation 2)" in detail(extended(api, run_id), 409)
-
-
-def test_a_run_without_generations_is_not_extended(api, services, sweep_id):
-    claim(services, sweep_id, "worker").finish()
-    assert fields(extended(api, sweep_id), 409)[0] == "search.generations"
+    end(2, summary={"ended.fitness": 2})
+    assert "`search.stop.fitness` ended the run after generation 2" in detail(
+        extended(api, run_id), 409
+    )
 
 
 def test_the_number_of_generations_is_checked(api, run_id, row, end):
@@ -251,9 +241,13 @@ def test_the_number_of_generations_is_checked(api, run_id, row, end):
     assert row().generations == 4
 
 
-def test_an_extension_is_published(api, run_id, end, published):
-    end(1)
-    before = len(published())
-    extended(api, run_id)
-    ((kind, run),) = published()[before:]
-    assert (kind, run["status"], run["generations"]) == ("run", "queued", 5)
+def test_a_request_holds_one_connection_at_a_time(serve, ended, identity, monkeypatch):
+    """With two, as many requests at once as there are connections wait for each other."""
+    only_one = {"pool_size": 1, "max_overflow": 0, "pool_timeout": 5}
+    monkeypatch.setattr(database, "POOL", only_one)
+    (name,) = names(identity, 1001)
+    with serve() as address, httpx.Client(base_url=f"{address}/api/v1", timeout=30) as client:
+        sent = {"from": {"archive": True}}
+        assert client.post(f"runs/{ended}/fork", json=sent).status_code == 202
+        for order in ("audit", "measurement"):
+            assert client.post(f"creatures/{name}/{order}").status_code == 202

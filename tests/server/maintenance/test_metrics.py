@@ -6,12 +6,11 @@ import httpx
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from server.attempts.leases import end_job
-from server.core.database import ago
-from server.deletion.purge import purge
-from server.maintenance import state_metrics
-from server.tables import Artifact, InstallationState, Run
-from server.workers import registry
+from microcosmos_server.attempts.leases import end_job
+from microcosmos_server.core.database import ago
+from microcosmos_server.maintenance import metrics
+from microcosmos_server.tables import Artifact, InstallationState, Run
+from microcosmos_server.workers import registry
 
 SAMPLE = re.compile(r'^(\w+)(?:\{((?:\w+="(?:[^"\\]|\\.)*",?)*)\})? (\S+)$')
 
@@ -77,41 +76,12 @@ def test_requests_are_counted_by_route_and_not_by_address(scrape, api, run_id):
     assert found["request_seconds_sum", ""] > 0
 
 
-def test_unknown_methods_are_counted_as_one(scrape, address):
-    for number in range(5):
-        assert httpx.request(f"INVENTED{number}", address, verify=False).status_code == 405
-    methods = re.findall(r'method="(\w+)"', " ".join(labels for _, labels in scrape()))
-    assert set(methods) == {"other"}
-
-
-def test_metrics_without_redis_show_the_rest(run_id, serve):
-    with serve(redis_url="redis://127.0.0.1:1/0") as address:
-        lines = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
+def test_metrics_without_redis_show_the_rest(run_id, served):
+    address = served(redis_url="redis://127.0.0.1:1/0")
+    lines = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()
     assert "microcosmos_redis_up 0.0" in lines
     assert 'microcosmos_runs{status="queued"} 1.0' in lines
     assert not any(line.startswith("microcosmos_queue_length{") for line in lines)
-
-
-def test_counters_fall_neither_by_deletion_nor_by_rewinding_nor_by_a_restart(
-    services, run_id, scrape, serve, record, claim_run, update_rows
-):
-    record(4, {5: 1.0}, seconds=10.0)
-    end_job(services, run_id, "worker")
-    claim_run().refuse("no")  # It begins with generation 0 again.
-    with services.sessions.read() as session:
-        then = ago(session, 1)
-    before = scrape()
-    update_rows(Run, deleted_at=then, purge_at=then)
-    purge(services)
-    after = scrape()
-    assert after["runs", 'status="failed"'] == 0
-    counters = [key for key in before if key[0].endswith("_total")]
-    assert all(after[key] >= before[key] for key in counters)
-    assert after["evaluations_total", ""] == 64
-    with serve(reconcile_interval=0.05) as address:
-        lines = httpx.get(f"{address}/metrics", verify=False).text.splitlines()
-    assert "microcosmos_evaluations_total 64.0" in lines
-    assert 'microcosmos_attempts_total{host="worker"} 2.0' in lines
 
 
 def test_the_age_of_checkpoints_is_that_of_running_runs(
@@ -129,6 +99,28 @@ def test_the_age_of_checkpoints_is_that_of_running_runs(
     assert scrape()[key] == pytest.approx(3600, abs=60)
     attempt.finish()
     assert key not in scrape()
+
+
+@pytest.mark.parametrize("running", [False, True])
+def test_a_run_that_a_person_pauses_needs_nobody(
+    api, services, run_id, claim_run, scrape, row, running
+):
+    run = f"runs/{run_id}"
+    claim_run().pause_until_resumed("It needs the plug-in mine.sway")
+    assert scrape()["runs_need_person", ""] == 1
+    assert api.post(f"{run}/resume").json()["warning"] is None
+    if running:
+        attempt = claim_run()
+        attempt.warn("The disk is almost full.")
+        api.post(f"{run}/pause")
+        attempt.warn("The disk is almost full.")
+        attempt.pause()
+    else:
+        claim_run().warn("The disk is almost full.")
+        end_job(services, run_id, "worker")
+        api.post(f"{run}/pause")
+    assert (row().status, row().warning) == ("paused", None)
+    assert scrape()["runs_need_person", ""] == 0
 
 
 @pytest.mark.long
@@ -204,7 +196,7 @@ def test_metrics_without_the_database_show_the_rest(scrape, monkeypatch):
     def refuse(*_):
         raise OperationalError("SELECT", None, Exception("connection refused"))
 
-    monkeypatch.setattr(state_metrics, "of_database", refuse)
+    monkeypatch.setattr(metrics, "of_database", refuse)
     found = scrape()
     assert found["database_up", ""] == 0
     assert found["redis_up", ""] == 1

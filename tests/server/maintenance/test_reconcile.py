@@ -1,25 +1,105 @@
 """Runs survive the death of workers, of jobs and of Redis."""
 
+from dataclasses import replace
+
 import httpx
 import pytest
 from redis import ConnectionError
+from sqlalchemy import select
 
-from server.attempts.attempt import ClaimLost
-from server.attempts.leases import end_job, fail_job
-from server.core.database import ago
-from server.maintenance import reconcile as reconciler
-from server.maintenance.reconcile import reconcile, take_turn
-from server.runs.lifecycle import MAX_ATTEMPTS
-from server.tables import InstallationState, Run, Worker
-from server.workers import registry
+from microcosmos_server.attempts.attempt import ClaimLost
+from microcosmos_server.attempts.leases import end_job, fail_job
+from microcosmos_server.core.database import ago, now
+from microcosmos_server.deletion.purge import expire
+from microcosmos_server.maintenance import reconcile as reconciler
+from microcosmos_server.maintenance.reconcile import reconcile, take_turn
+from microcosmos_server.queue.jobs import Jobs
+from microcosmos_server.runs.lifecycle import MAX_ATTEMPTS
+from microcosmos_server.services.messages import Events
+from microcosmos_server.settings import MAX_DAYS, MAX_SECONDS, Settings
+from microcosmos_server.tables import InstallationState, Run, Worker
+from microcosmos_server.workers import registry
 
 pytestmark = pytest.mark.postgresql
 
 
-def test_a_server_reconciles_when_it_starts(run_id, attempt, serve, silence, row, eventually):
+@pytest.fixture
+def often(services):
+    """Services whose reconciler takes a pass every 5 seconds."""
+    settings = services.settings.model_copy(update={"reconcile_interval": 5.0})
+    return replace(services, settings=settings)
+
+
+@pytest.fixture(autouse=True)
+def passes(services, update_rows):
+    """Lets the last pass of the reconciler be as old as given; without one none was before."""
+
+    def let_pass(seconds=None, since=None):
+        with services.sessions.read() as session:
+            last = None if seconds is None else ago(session, seconds)
+            reachable = None if since is None else ago(session, since)
+        values = {"reconciled_at": last, "seen_at": last, "reachable_since": reachable}
+        update_rows(InstallationState, **values)
+
+    let_pass()
+    yield let_pass
+    let_pass()
+
+
+def test_a_server_reconciles_when_it_starts(
+    run_id, attempt, serve, silence, row, eventually, passes
+):
     silence()
+    passes(5, since=100)
     with serve(reconcile_interval=0.05):
         eventually(lambda: row().status == "queued")
+
+
+def test_the_longest_times_that_settings_take_break_no_pass(services, attempt, row):
+    seconds = dict.fromkeys(("lease", "grace", "reconcile_interval"), float(MAX_SECONDS))
+    days = {name: float(MAX_DAYS) for name in Settings.model_fields if name.startswith("keep_")}
+    settings = services.settings.model_copy(update=seconds | days)
+    longest = replace(services, settings=settings)
+    assert take_turn(longest)
+    assert not take_turn(longest)
+    reconcile(longest)
+    expire(longest)
+    assert row().status == "running"
+
+
+@pytest.mark.parametrize("action", [None, "cancel"])
+def test_a_lease_does_not_expire_by_an_outage_of_the_database(
+    services, often, api, run_id, attempt, row, silence, passes, update_rows, action
+):
+    """Workers could not report either; the first heartbeat may come after the first pass."""
+    if action:
+        api.post(f"runs/{run_id}/{action}")
+        with services.sessions.read() as session:
+            update_rows(Run, requested_at=ago(session, 60))
+    silence()
+    for seconds in (60, 5, 5, 5):  # The outage, and the first passes after it.
+        with services.sessions.read() as session:
+            since = session.scalar(select(InstallationState.reachable_since))
+            last = ago(session, seconds)
+        update_rows(InstallationState, reconciled_at=last, seen_at=last)
+        assert take_turn(often)
+        reconcile(services)
+        assert (row().status, row().worker) == ("running", "worker")
+    with services.sessions.read() as session:
+        assert session.scalar(select(InstallationState.reachable_since)) == since, "it stays"
+    passes(5, since=services.settings.lease + 1)
+    reconcile(services)
+    assert row().status == ("cancelled" if action else "queued"), "now it is the worker's fault"
+
+
+def test_a_long_pass_is_no_outage(services, often, update_rows, passes):
+    passes(5, since=1000)
+    with services.sessions.read() as session:
+        update_rows(InstallationState, reconciled_at=ago(session, 600))
+        before = session.scalar(select(InstallationState.reachable_since))
+    assert take_turn(often)
+    with services.sessions.read() as session:
+        assert session.scalar(select(InstallationState.reachable_since)) == before
 
 
 def test_servers_take_turns(services, update_rows):
@@ -30,6 +110,29 @@ def test_servers_take_turns(services, update_rows):
         earlier = ago(session, interval)
     update_rows(InstallationState, reconciled_at=earlier)
     assert [take_turn(services) for _ in range(2)] == [True, False]
+
+
+def test_a_clock_that_is_set_back_stops_nothing(
+    services, often, attempt, row, alive, passes, update_rows
+):
+    """Times that were written before are ahead of it, here by an hour."""
+    alive("worker", "busy")
+    with services.sessions.read() as session:
+        ahead, before = ago(session, -3600), ago(session, -3600 + 100)
+    update_rows(Run, heartbeat_at=ahead)
+    update_rows(Worker, heartbeat_at=ahead)
+    state = {"reconciled_at": ahead, "seen_at": ahead, "passed_at": ahead}
+    update_rows(InstallationState, **state, reachable_since=before)
+    assert take_turn(often)
+    assert not take_turn(often), "an interval later"
+    reconcile(services)
+    assert row().status == "running", "its lease counts from now"
+    with services.sessions.read() as session:
+        moment = now(session)
+        state = session.scalars(select(InstallationState)).one()
+        assert max(state.reconciled_at, state.passed_at, state.reachable_since) <= moment
+        assert session.get_one(Worker, "worker").heartbeat_at <= moment
+    assert row().heartbeat_at <= moment
 
 
 def test_a_silent_workers_run_is_queued_again(services, attempt, flush, row, record, silence):
@@ -116,11 +219,11 @@ def test_a_job_killed_by_a_stopping_worker_costs_no_attempt(services, run_id, ro
             attempt.read_request()
 
 
-def test_a_run_can_be_submitted_while_redis_is_away(spec, serve, taken):
-    with serve(redis_url="redis://127.0.0.1:1/0") as address:
-        body = {**spec, "seed": 7}
-        answer = httpx.post(f"{address}/api/v1/runs", json=body, timeout=30)
-        assert httpx.get(f"{address}/readyz", timeout=30).status_code == 503
+def test_a_run_can_be_submitted_while_redis_is_away(spec, served, taken):
+    address = served(redis_url="redis://127.0.0.1:1/0")
+    body = {**spec, "seed": 7}
+    answer = httpx.post(f"{address}/api/v1/runs", json=body, timeout=30)
+    assert httpx.get(f"{address}/readyz", timeout=30).status_code == 503
     assert answer.status_code == 202
     run_id = answer.json()["id"]
     assert taken() == run_id
@@ -137,6 +240,25 @@ def test_an_outage_of_redis_does_not_end_the_reconciler(serve, monkeypatch, even
     monkeypatch.setattr(reconciler, "reconcile", sometimes)
     with serve(reconcile_interval=0.01):
         eventually(lambda: len(calls) >= 5)
+
+
+def test_a_pass_is_complete_without_redis(
+    services, serve, monkeypatch, eventually, update_rows
+):
+    """Redis has an alert of its own."""
+
+    def away(*_, **__):
+        raise ConnectionError("Connection refused")
+
+    def passed():
+        with services.sessions.read() as session:
+            return session.scalar(select(InstallationState.passed_at))
+
+    update_rows(InstallationState, passed_at=None)
+    monkeypatch.setattr(Jobs, "clean", away)
+    monkeypatch.setattr(Events, "forget", away)
+    with serve(reconcile_interval=0.05):
+        eventually(passed)
 
 
 def test_workers_silent_for_long_are_removed(services, api, update_rows):

@@ -4,17 +4,17 @@ import csv
 import io
 from uuid import UUID
 
-import newick
 import pytest
 import reports
 from answers import detail
 
 from microcosmos.archive import columns, creature
 from microcosmos.spec import parse
-from server.attempts.claim import claim
-from server.phylogenies import births
-from server.runs.submission import submit
-from server.tables import Elite, Run
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.auth.authorize import SHARE_HEADER
+from microcosmos_server.phylogenies import births
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.tables import Elite, Run
 
 
 def name(number):
@@ -35,10 +35,10 @@ def write(services, run_id):
     """Writes generations of the run, or of another."""
     attempts = {}
 
-    def write(*generations, run=run_id):
+    def write(*generations, run=run_id, first=1):
         if run not in attempts:
             attempts[run] = claim(services, run, "worker")
-        for number, elites in enumerate(generations, 1):
+        for number, elites in enumerate(generations, first):
             attempts[run].record(generation_of(number, elites), 1.0)
 
     return write
@@ -100,6 +100,34 @@ def test_the_tree_of_a_run_has_all_that_ever_entered(api, run_id, write):
     }
 
 
+def test_the_tree_as_of_a_generation_is_the_one_that_it_was(api, run_id, write):
+    write([(1, 5, ()), (2, 6, ())])
+    paths = [f"runs/{run_id}/phylogeny{ending}" for ending in ("", ".csv", ".nwk")]
+    before = [api.get(path).content for path in paths]
+    write([(3, 5, (1,))], first=2)
+    assert [api.get(path).content for path in paths] != before
+    asked = {"generation": 1}
+    assert [api.get(path, params=asked).content for path in paths] == before
+
+
+@pytest.mark.postgresql
+def test_what_became_of_initial_creatures_later_is_not_in_an_earlier_tree(
+    api, run_id, write, start_from, upload
+):
+    upload(reports.identity(7))
+    write([(2, 5, ())], [(8, 5, ())])
+    fork = start_from(2, 7)
+    write([(2, 5, ())], run=fork)
+    paths = [f"runs/{fork}/phylogeny{ending}" for ending in ("", ".csv", ".nwk")]
+    before = [api.get(path) for path in paths]
+    # One loses its cell, the other enters the archive.
+    write([(3, 5, (2,)), (7, 9, ())], run=fork, first=2)
+    after = [api.get(path, params={"generation": 1}) for path in paths]
+    assert [one.content for one in after] == [one.content for one in before]
+    assert [one.headers["etag"] for one in after] == [one.headers["etag"] for one in before]
+    assert "at most 2" in detail(api.get(paths[0], params={"generation": 3}), 422)
+
+
 def test_a_creature_that_moved_to_another_cell_is_not_lost(api, run_id, write):
     write([(1, 5, ()), (1, 6, ())], [(2, 5, ())])
     _, arrays = read(api, f"runs/{run_id}")
@@ -121,6 +149,31 @@ def test_the_tree_of_a_fork_leads_to_the_run_before(api, run_id, write, start_fr
 
 
 @pytest.mark.postgresql
+def test_initial_creatures_are_elites_of_a_run_that_holds_them(
+    api, run_id, write, start_from, upload
+):
+    upload(reports.identity(7))
+    write([(1, 5, ()), (2, 6, ())], [(8, 6, ())])
+    fork = start_from(7, 2, 1)
+    write([(7, 1, ()), (2, 9, ()), (1, 3, ())], [(3, 3, (2,))], run=fork)
+    text = api.get(f"runs/{fork}/phylogeny.csv").text
+    rows = {row["taxon_label"]: row for row in csv.DictReader(io.StringIO(text))}
+    fields = ("run", "generation", "fitness", "destruction_time")
+    found = {number: tuple(rows[name(number)][one] for one in fields) for number in (1, 2, 7)}
+    assert found == {
+        1: (str(run_id), "1", "1.0", "inf"),  # The older run holds it still.
+        2: (str(run_id), "1", "2.0", "inf"),
+        7: (str(fork), "1", "7.0", "inf"),
+    }
+    # The fork begins with the births at 1.
+    assert (rows[name(7)]["origin_time"], rows[name(3)]["origin_time"]) == ("2", "3")
+    for number in (1, 2):
+        text = api.get(f"creatures/{name(number)}/phylogeny.csv").text
+        rows = {row["taxon_label"]: row for row in csv.DictReader(io.StringIO(text))}
+        assert rows[name(number)]["destruction_time"] == "inf"
+
+
+@pytest.mark.postgresql
 def test_the_tree_of_a_creature_has_its_ancestors_and_descendants_of_any_run(
     api, run_id, write, start_from
 ):
@@ -131,26 +184,6 @@ def test_the_tree_of_a_creature_has_its_ancestors_and_descendants_of_any_run(
     assert list(family(arrays)) == [name(1), name(2), name(3)]
     _, arrays = read(api, f"creatures/{name(1)}")
     assert set(family(arrays)) == {name(one) for one in (1, 2, 3, 8)}
-
-
-def test_the_files_of_a_tree_are_read_back(api, run_id, write):
-    write([(1, 5, ())], [(2, 5, (1,)), (3, 6, (1,))])
-    parents = family(read(api, f"runs/{run_id}")[1])
-    for path in (f"runs/{run_id}", f"creatures/{name(1)}"):
-        table = api.get(f"{path}/phylogeny.csv")
-        assert table.headers["content-type"].startswith("text/csv")
-        assert "phylogeny-" in table.headers["content-disposition"]
-        rows = list(csv.DictReader(io.StringIO(table.text)))
-        for row in rows:
-            ancestors = [
-                int(one) for one in row["ancestor_list"][1:-1].split(",") if one != "none"
-            ]
-            assert [rows[one]["taxon_label"] for one in ancestors] == parents[
-                row["taxon_label"]
-            ]
-        assert {row["taxon_label"] for row in rows} == set(parents)
-        nodes = newick.read(api.get(f"{path}/phylogeny.nwk").text)
-        assert {one.label: [one.parent] if one.parent else [] for one in nodes} == parents
 
 
 def test_a_known_tree_is_not_sent_again_until_it_grows(api, run_id, write, start_from, upload):
@@ -197,4 +230,27 @@ def test_a_tree_takes_few_statements_however_large_it_is(services, run_id, write
     with services.sessions.read() as session:
         run = session.get_one(Run, run_id)
         assert session.query(Elite).count() == 100
-        assert statements(births.entered, session, run) == 3
+        assert statements(births.entered, session, run, run.generation) == 3
+
+
+@pytest.fixture
+def shared(api, write):
+    """A share of the second of three generations."""
+    write([(1, 5, ())], [(2, 5, (1,))], [(3, 5, (2,))])
+    slug = api.post("shares", json={"creature": name(2)}).json()["slug"]
+    return lambda path: api.get(path, headers={SHARE_HEADER: slug})
+
+
+def test_a_share_shows_the_ancestors_of_its_creature_alone(shared, run_id):
+    answer = shared(f"creatures/{name(2)}/phylogeny")
+    header, arrays = columns.load(answer.content)
+    assert [bytes(row).hex() for row in arrays["creature"]] == [name(1), name(2)]
+    assert arrays["links"].tolist() == [[1, 0]]
+    assert header["runs"] == []
+    text = shared(f"creatures/{name(2)}/phylogeny.csv").text
+    assert str(run_id) not in text
+
+
+def test_a_share_shows_no_tree_of_others(shared, run_id):
+    assert shared(f"creatures/{name(1)}/phylogeny").status_code == 404
+    assert shared(f"runs/{run_id}/phylogeny").status_code == 403

@@ -1,49 +1,30 @@
 """Replays, films, pictures, pose streams and measurements on request."""
 
 import json
-from io import BytesIO
+from contextlib import closing
+from pathlib import Path
 
-import httpx
 import numpy as np
 import pytest
 from answers import detail
 from reports import DEMO, audit, pose_stream, replay
+from rq import SimpleWorker
+from rq.serializers import JSONSerializer
 from sqlalchemy import select
 from sqlalchemy.exc import IntegrityError
 
 from microcosmos.archive import creature
 from microcosmos.archive.poses import decode
-from microcosmos.viz.replay_file import REPLAY_VERSION
-from server.attempts.claim import claim
-from server.auth import tokens
-from server.renderings import storage as renderings
-from server.runs.submission import submit
-from server.tables import AUDIT, GIF, MEASUREMENT, REPLAY, Artifact
-
-
-def test_a_refused_replay_answers_with_the_engines_reason(api, services, known):
-    error = creature.CreatureError("task.steps", "at most 1 cell step for a replay", 2)
-    services.jobs.render(known)
-    job = services.jobs.find(services.jobs.rendering_id(known))
-    services.jobs.give_up(job, f"Traceback\n{type(error).__module__}.CreatureError: {error}\n")
-    refused = detail(api.get(f"creatures/{known}/replay"), 500)
-    assert refused.startswith("The replay failed: `task.steps` needs at most 1 cell step")
-    assert services.jobs.renderings.count == 0
-
-
-def test_a_rendering_job_that_vanishes_is_no_error(services, known, monkeypatch):
-    services.jobs.render(known)
-    job = services.jobs.find(services.jobs.rendering_id(known))
-    services.jobs.remove(job.id)
-    monkeypatch.setattr(services.jobs, "find", lambda _: job)
-    renderings.enqueue(services, known)
-
-
-def test_a_range_beyond_all_numbers_is_ignored(api, services, known):
-    renderings.save(services, known, REPLAY, b"the replay")
-    for wanted in ("bytes=" + "9" * 5000 + "-", "bytes=-" + "9" * 5000):
-        answer: httpx.Response = api.get(f"creatures/{known}/replay", headers={"Range": wanted})
-        assert (answer.status_code, answer.content) == (200, b"the replay")
+from microcosmos.viz import motion
+from microcosmos.viz.replay_file import REPLAY_VERSION, read_replay
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.core.errors import FileLost
+from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.services.services import connect
+from microcosmos_server.storage import mark
+from microcosmos_server.tables import AUDIT, GIF, MEASUREMENT, REPLAY, Artifact
+from microcosmos_worker import jobs
 
 
 @pytest.mark.parametrize(
@@ -91,27 +72,14 @@ def test_the_verdict_is_that_of_the_saved_audit(api, services, known):
     assert verdict() is None
 
 
-def test_a_token_to_read_orders_no_audit_but_waits_for_one(api, services, known):
-    reader = tokens.create(services, "reader", "read")
-    sent = {"Authorization": f"Bearer {reader.secret}"}
+def test_an_audit_is_ordered_once_by_a_post_alone(api, services, known):
     path = f"creatures/{known}/audit"
-    assert api.get(path, headers=sent).status_code == 204
-    refused = detail(api.post(path, headers=sent), 403)
-    assert refused == "This needs a token of scope `write`; `reader` has `read`."
+    assert api.get(path).status_code == 204
     assert services.jobs.audits.count == 0
     for _ in range(2):
         assert api.post(path).status_code == 202
-        assert api.get(path, headers=sent).status_code == 202
+        assert api.get(path).status_code == 202
     assert services.jobs.audits.count == 1
-    services.jobs.remove(services.jobs.rendering_id(known, AUDIT))
-    renderings.save(services, known, AUDIT, audit(True))
-    found = api.get(path, headers=sent)
-    assert (found.status_code, found.content) == (200, audit(True))
-    assert found.headers["content-type"] == "application/json"
-    unchanged = sent | {"If-None-Match": found.headers["etag"]}
-    assert api.get(path, headers=unchanged).status_code == 304
-    assert api.post(path).status_code == 202
-    assert services.jobs.audits.count == 0, "it was audited"
 
 
 def test_an_audit_that_cannot_be_saved_leaves_the_verdict(api, services, known, monkeypatch):
@@ -127,32 +95,31 @@ def test_an_audit_that_cannot_be_saved_leaves_the_verdict(api, services, known, 
     assert api.get(f"creatures/{known}/verdict").json() == {"trusted": True}
 
 
-def test_a_film_is_saved_under_the_creatures_name(api, services, known):
-    renderings.save(services, known, "film.gif", b"GIF")
-    answer = api.get(f"creatures/{known}/film.gif")
-    expected = f'inline; filename="creature-{known[:12]}.gif"'
-    assert answer.headers["content-disposition"] == expected
-
-
 @pytest.mark.parametrize(
     ("raised", "reported"),
     [
-        ("ValueError: too large to refine", "ValueError: too large"),
+        (ValueError("too large to refine"), "ValueError: too large to refine"),
         (
-            "sqlalchemy.exc.OperationalError: database is locked\n[SQL: BEGIN]\n(Background)",
-            "OperationalError: database is locked. Try again",
+            RuntimeError("the database is locked\n[SQL: BEGIN]"),
+            "RuntimeError: the database is locked",
+        ),
+        (
+            creature.CreatureError("task.steps", "at most 1", 2),
+            "`task.steps` needs at most 1; got 2",
         ),
     ],
 )
 def test_a_failed_kind_reports_its_error_and_leaves_the_others(
-    api, services, known, raised, reported
+    api, services, known, raised, reported, monkeypatch
 ):
+    def refuse():
+        raise raised
+
+    monkeypatch.setattr(jobs, "prepare_once", refuse)
     services.jobs.render(known, "audit")
-    job = services.jobs.find(services.jobs.rendering_id(known, "audit"))
-    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
+    SimpleWorker([services.jobs.audits], serializer=JSONSerializer).work(burst=True)
     found = detail(api.get(f"creatures/{known}/audit"), 500)
-    assert "The audit failed: " in found
-    assert reported in found
+    assert f"The audit failed: {reported}. Try again" in found
     assert api.get(f"creatures/{known}/film.gif").status_code == 202
 
 
@@ -191,13 +158,19 @@ def test_poses_without_a_stored_stream_are_every_kth_frame_of_the_replay(
     np.testing.assert_array_equal(np.diff(found.times), 5 * stride)
     assert (found.creature, found.strokes, found.size) == (known, 0, (8, 4))
     assert found.length == pytest.approx(np.sum(np.hypot(*np.diff(places[0], axis=0).T)))
-    assert answer.headers["cache-control"] == "no-cache"
-    known_already = {"If-None-Match": answer.headers["etag"]}
-    again = api.get(f"creatures/{known}/poses", headers=known_already)
-    assert (again.status_code, again.content) == (304, b"")
 
 
-@pytest.mark.parametrize("path", ["poses", "poses.csv", "poses.npz"])
+def test_the_motion_is_the_replay_made_small(api, services, known):
+    positions = np.random.default_rng(0).uniform(0, 8, (9, 3, 2))
+    scales = {"velocity": {"scale": 1.0}, "energy": {"scale": 1.0, "frames": 0}}
+    data = replay(positions, 3, joints=[[0, 1]], **scales)
+    renderings.save(services, known, REPLAY, data)
+    answer = api.get(f"creatures/{known}/motion")
+    assert answer.status_code == 200
+    assert answer.content == motion.encode(read_replay(data))
+
+
+@pytest.mark.parametrize("path", ["motion", "poses", "poses.csv", "poses.npz"])
 def test_poses_without_a_stream_and_without_a_replay_order_the_replay(
     api, services, known, path
 ):
@@ -206,31 +179,14 @@ def test_poses_without_a_stream_and_without_a_replay_order_the_replay(
     assert services.jobs.renderings.count == 1
 
 
-def test_recorded_poses_are_sent_as_stored_and_kept_for_good(api, services, record, report):
+def test_recorded_poses_are_sent_as_stored_and_told_by_a_tag(api, services, record, report):
     record(1, {3: 1.5}, poses=True)
     (elite,) = report(1, {3: 1.5}, poses=True).elites
     answer = api.get(f"creatures/{elite.creature}/poses")
     assert answer.content == elite.poses
-    assert "immutable" in answer.headers["cache-control"]
-    known_already = {"If-None-Match": answer.headers["etag"]}
-    again = api.get(f"creatures/{elite.creature}/poses", headers=known_already)
-    assert (again.status_code, again.content) == (304, b"")
+    sent = {"If-None-Match": answer.headers["etag"]}
+    assert api.get(f"creatures/{elite.creature}/poses", headers=sent).status_code == 304
     assert services.jobs.renderings.count == 0
-
-
-def test_poses_are_exported_as_csv_and_for_numpy(api, record, report):
-    record(1, {3: 1.5}, poses=True)
-    (elite,) = report(1, {3: 1.5}, poses=True).elites
-    stream = decode(elite.poses)
-    table = api.get(f"creatures/{elite.creature}/poses.csv")
-    assert f'"poses-{elite.creature[:12]}.csv"' in table.headers["content-disposition"]
-    assert table.headers["content-type"].startswith("text/csv")
-    rows = np.loadtxt(table.text.splitlines(), delimiter=",", skiprows=1)
-    assert rows.shape == (64 * 3, 4)
-    np.testing.assert_allclose(rows[:, 2:].reshape(64, 3, 2), stream.cells, atol=1e-4)
-    arrays = np.load(BytesIO(api.get(f"creatures/{elite.creature}/poses.npz").content))
-    np.testing.assert_array_equal(arrays["positions"], stream.cells)
-    np.testing.assert_array_equal(arrays["times"], rows[::3, 0])
 
 
 def test_a_known_creature_gets_the_first_stream_that_a_run_records(api, upload, record, report):
@@ -255,6 +211,69 @@ def test_a_stored_stream_stays_when_another_run_finds_the_creature(
         held.record(found, 1.0)
     answer = api.get(f"creatures/{elite.creature}/poses")
     assert len(decode(answer.content).positions) == 64
+
+
+@pytest.mark.parametrize("kind", ["film.gif", "replay", "poses", "poses.csv", "motion"])
+def test_a_rendering_whose_file_is_lost_is_made_again(api, services, known, kind):
+    stored = REPLAY if kind in ("poses", "poses.csv", "motion") else kind
+    renderings.save(services, known, stored, b"lost")
+    (file,) = Path(services.artifacts.root).glob("replays/*/*")
+    file.unlink()
+    for _ in range(2):
+        assert api.get(f"creatures/{known}/{kind}").status_code == 202
+    assert services.jobs.renderings.count == 1
+    renderings.save(services, known, stored, b"again")
+    assert renderings.existing(services, known, stored) == b"again"
+
+
+def test_a_lost_rendering_takes_one_connection_at_a_time(services, known, monkeypatch):
+    """With two, as many requests at once as there are connections wait for each other."""
+    renderings.save(services, known, GIF, b"lost")
+    held, fault = [], mark.fault
+
+    def lost(artifact):
+        raise FileLost(artifact.path)
+
+    def looked(*given):
+        held.append(own.sessions.engine.pool.checkedout())
+        return fault(*given)
+
+    monkeypatch.setattr(mark, "fault", looked)
+    with closing(connect(services.settings)) as own, own.sessions.read() as session:
+        assert renderings.read(session, own, known, GIF, lost) is None
+        assert own.sessions.engine.pool.checkedout() == 0
+        assert renderings.find(session, known, GIF) is None
+    assert held == [0]
+
+
+def test_a_lost_audit_keeps_its_verdict_until_it_is_ordered_again(api, services, known):
+    path = f"creatures/{known}/audit"
+    renderings.save(services, known, AUDIT, audit(True))
+    (file,) = Path(services.artifacts.root).glob("replays/*/*")
+    whole = file.read_bytes()
+    file.unlink()
+    assert "The store has lost replays/" in detail(api.get(path), 500)
+    assert services.jobs.audits.count == 0
+    file.write_bytes(whole)  # From a backup.
+    assert api.get(path).content == whole
+    file.unlink()
+    assert api.post(path).status_code == 202
+    assert api.get(path).status_code == 202
+    assert services.jobs.audits.count == 1
+    assert api.get(f"creatures/{known}/verdict").json() == {"trusted": True}
+    renderings.save(services, known, AUDIT, audit(False))
+    assert api.get(path).json()["verdict"]["trusted"] is False
+    assert api.get(f"creatures/{known}/verdict").json() == {"trusted": False}
+
+
+def test_behind_a_lost_mount_no_rendering_is_lost(api, services, known):
+    renderings.save(services, known, GIF, b"a film")
+    store = Path(services.artifacts.root)
+    away = store.rename(store.with_name("away"))
+    found = detail(api.get(f"creatures/{known}/film.gif"), 503)
+    assert found == "The store of files does not answer; try again."
+    away.rename(store)
+    assert api.get(f"creatures/{known}/film.gif").content == b"a film"
 
 
 @pytest.fixture
@@ -282,11 +301,3 @@ def test_a_creature_is_measured_again_on_request_and_repeatedly(api, services, m
 def test_an_unmeasured_creature_is_not_measured_again(api, known):
     answer = api.post(f"creatures/{known}/measurement")
     assert (answer.status_code, answer.json()["title"]) == (422, "Never measured")
-
-
-def test_a_measurement_that_failed_says_why(api, services, measured):
-    api.post(f"creatures/{measured}/measurement")
-    (job,) = services.jobs.audits.get_jobs()
-    services.jobs.give_up(job, "Traceback\nValueError: out of memory\n")
-    refused = detail(api.get(f"creatures/{measured}/measurement"), 500)
-    assert "The measurement failed: ValueError: out of memory" in refused

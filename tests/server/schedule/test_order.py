@@ -9,12 +9,12 @@ import pytest
 from reports import DEMO
 from sqlalchemy import update
 
-from server.attempts.claim import claim
-from server.attempts.leases import end_job, fail_job
-from server.auth import tokens
-from server.auth.device_use import count_device_time
-from server.runs.submission import IdempotentRequest, submit
-from server.tables import HIGH, LOW, NORMAL, RUNNING, URGENT, Run
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.attempts.leases import end_job, fail_job
+from microcosmos_server.auth import tokens
+from microcosmos_server.auth.device_use import count_device_time
+from microcosmos_server.runs.submission import IdempotentRequest, submit
+from microcosmos_server.tables import HIGH, LOW, NORMAL, RUNNING, URGENT, Run
 
 pytestmark = pytest.mark.postgresql
 ANNE, BERT, CARL = uuid4(), uuid4(), None
@@ -79,30 +79,6 @@ def test_owners_take_turns_however_many_runs_one_of_them_has(ordered):
     assert ordered([*late, *many]) == turns
 
 
-def test_running_runs_count_as_turns(ordered):
-    many = [Queued(ANNE, at) for at in range(5)]
-    late = [Queued(BERT, 60), Queued(BERT, 61)]
-    turns = [late[0], many[0], late[1], *many[1:]]
-    assert ordered([*late, *many], running=[ANNE]) == turns
-
-
-@pytest.mark.parametrize(("other", "first"), [(5.0, BERT), (50.0, ANNE)])
-def test_of_equal_turns_the_owner_with_less_device_time_goes_first(ordered, other, first):
-    runs = ordered([Queued(ANNE, 0), Queued(BERT, 60)], used={ANNE: 10.0, BERT: other})
-    assert runs[0].owner == first
-
-
-def test_priorities_order_the_runs_of_one_owner(ordered):
-    low, normal, high = (Queued(ANNE, at, one) for at, one in enumerate((LOW, NORMAL, HIGH)))
-    other = Queued(BERT, 60, LOW)
-    assert ordered([low, normal, high, other]) == [high, other, normal, low]
-
-
-def test_urgent_runs_go_before_all(ordered):
-    high, other, urgent = Queued(ANNE, 1, HIGH), Queued(BERT, 60), Queued(ANNE, 90, URGENT)
-    assert ordered([high, other, urgent], running=[ANNE] * 3) == [urgent, other, high]
-
-
 def test_taken_and_interrupted_runs_come_first_and_count_as_turns(ordered):
     urgent = Queued(ANNE, 0, URGENT)
     lost = Queued(BERT, 2, LOW, sweep=True, interrupted=True)
@@ -110,11 +86,6 @@ def test_taken_and_interrupted_runs_come_first_and_count_as_turns(ordered):
     waiting, other = Queued(BERT, 1), Queued(ANNE, 4)
     found = ordered([urgent, waiting, lost, taken, other])
     assert found == [taken, lost, urgent, other, waiting]
-
-
-def test_single_runs_go_before_sweeps_of_the_same_owner(ordered):
-    sweep, single = Queued(ANNE, 0, sweep=True), Queued(ANNE, 60)
-    assert ordered([sweep, single]) == [single, sweep]
 
 
 def by_the_rules(queued, running, used):
@@ -134,8 +105,7 @@ def by_the_rules(queued, running, used):
     return sorted(queued, key=key)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_mixed_queues_are_in_the_order_that_the_rules_tell(ordered, seed):
     draw = random.Random(seed)
     queued = [
@@ -186,16 +156,12 @@ def test_an_interrupted_run_goes_before_all_that_wait(
     if died:
         fail_job(services, UUID(first), "one", "its process died")
     else:
-        services_claim(services, first, "one")
+        assert claim(services, UUID(first), "one")
         end_job(services, UUID(first), "one")
     flush()
     assert waiting() == [first, *others]
     assert api.post("runs/estimate", json=spec).json()["queue"]["runs_ahead"] == 3
     assert taken("two") == first
-
-
-def services_claim(services, run, worker):
-    assert claim(services, UUID(run), worker)
 
 
 def test_a_run_that_a_person_resumes_goes_behind_those_that_wait(api, spec, taken, waiting):
@@ -204,8 +170,3 @@ def test_a_run_that_a_person_resumes_goes_behind_those_that_wait(api, spec, take
     for command in ("pause", "resume"):
         assert api.post(f"runs/{first}/{command}").status_code < 300
     assert waiting() == [*others, first]
-
-
-def test_a_list_of_one_owners_runs_is_the_order_of_submission(api, spec, waiting):
-    ids = [api.post("runs", json={**spec, "seed": seed}).json()["id"] for seed in range(5)]
-    assert waiting() == ids

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from server.auth.authorize import SHARE_HEADER
+from microcosmos_server.auth.authorize import SHARE_HEADER
 
 
 @pytest.fixture

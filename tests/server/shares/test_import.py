@@ -2,12 +2,10 @@
 
 import pytest
 from answers import detail
-from typer.testing import CliRunner
 
 from microcosmos.archive import pedigree
-from microcosmos.cli import app
-from microcosmos.client import Client, NotFound, ServerError, shared
-from server.core import static_files
+from microcosmos.client import Client, NotFound, ServerError, sharing
+from microcosmos_server.core import static_files
 
 FOREIGN = {"Origin": "https://else.example"}
 
@@ -95,21 +93,11 @@ def test_a_client_imports_a_share_by_its_address(address, share, known):
 
 def test_a_client_verifies_what_it_imports(monkeypatch, share, known, api):
     file = api.get(f"shares/{share['slug']}/creature.json").json()
-    at = shared.address(f"https://lab.example/s/x/creatures/{'ab' * 32}")
+    at = sharing.address(f"https://lab.example/s/x/creatures/{'ab' * 32}")
     assert at
-    monkeypatch.setattr(shared.Address, "read", lambda *_, **__: file)
+    monkeypatch.setattr(sharing.Address, "read", lambda *_, **__: file)
     with pytest.raises(ServerError, match=f"instead of {'ab' * 32}"):
-        shared.creature(at)
+        sharing.creature(at)
     file["identity"]["task"]["steps"] += 1
     with pytest.raises(ValueError, match="sha256"):
-        shared.creature(at._replace(creature=None))
-
-
-def test_the_command_imports_a_share(address, share, known, monkeypatch):
-    monkeypatch.setenv("MICROCOSMOS_URL", address)
-    done = CliRunner().invoke(app, ["import", share["url"]])
-    assert (done.exit_code, done.stdout.strip()) == (0, known)
-    done = CliRunner().invoke(app, ["import", share["url"], "--all"])
-    assert (done.exit_code, done.stdout.strip()) == (0, known)
-    made = CliRunner().invoke(app, ["share", known, "--title", "Another"])
-    assert "Nobody else can open this link" in made.stderr
+        sharing.creature(at._replace(creature=None))

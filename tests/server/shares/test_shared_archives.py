@@ -1,12 +1,18 @@
 """Shares of an archive: as it was, without its owner's notes."""
 
+import errno
+from pathlib import Path
+
 import pytest
+from answers import detail
 
 from microcosmos.archive import file
-from microcosmos.client import Client, shared
-from server.attempts.claim import claim
-from server.renderings import storage as renderings
-from server.tables import LOOP, PREVIEW, REPLAY
+from microcosmos.client import Client, sharing
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.storage.artifacts import Artifacts
+from microcosmos_server.storage.garbage import remove_files
+from microcosmos_server.tables import LOOP, PREVIEW, REPLAY, Artifact
 
 
 @pytest.fixture
@@ -32,7 +38,7 @@ def test_an_archive_is_shared_as_it_was(through, archive, attempt, report, run_i
     later = report(3, {3: 9.0, 8: 9.0})
     attempt.record(later, 1.0)
     assert through(slug, f"{under}/archive").json() == before
-    assert through(slug, f"{under}/archive", params={"generation": 3}).json() == before
+    assert through(slug, f"{under}/archive", params={"generation": 3}).status_code == 422
     assert before["cell"] == [3, 7]
     assert through(slug, under).json()["face"] == before["creature"][0]
     history = through(slug, f"{under}/archive/history").json()
@@ -79,6 +85,20 @@ def test_the_file_of_an_archive_carries_licence_and_credit(
     assert through(slug, f"{under}/archive.h5").status_code == 410
 
 
+def test_an_archive_is_shared_under_the_terms_of_all_its_creatures(
+    api, through, run_id, attempt, report
+):
+    sent = {"run": str(run_id)}
+    first = api.post("shares", json=sent).json()
+    assert (first["licence"], first["credit"]) == ("CC-BY-4.0", [])
+    attempt.terms = {"licence": "CC-BY-NC-4.0", "credit": ["Ada"]}
+    attempt.record(report(3, {8: 0.5}), 1.0)
+    shared = api.post("shares", json=sent | {"generation": 3}).json()
+    assert (shared["licence"], shared["credit"]) == ("CC-BY-NC-4.0", ["Ada"])
+    again = api.post("shares", json=sent | {"generation": 2}).json()
+    assert (again["licence"], again["credit"]) == ("CC-BY-4.0", []), "as it was"
+
+
 def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attempt):
     answer = api.post("shares", json={"run": str(run_id), "generation": 1})
     assert (answer.status_code, answer.json()["generation"]) == (201, 1)
@@ -87,6 +107,64 @@ def test_a_past_generation_is_shared_without_a_file(api, through, run_id, attemp
     assert "The share has no file" in through(slug, f"{under}/archive.h5").json()["detail"]
     beyond = api.post("shares", json={"run": str(run_id), "generation": 3})
     assert beyond.json()["errors"][0]["field"] == "generation"
+
+
+def test_an_archive_is_published_on_a_full_disk_and_gets_its_file_later(
+    api, through, attempt, run_id, monkeypatch
+):
+    def refuse(artifacts, path, data):
+        raise OSError(errno.ENOSPC, "No space left on device", path)
+
+    sent = {"run": str(run_id), "listed": True}
+    with monkeypatch.context() as full:
+        full.setattr(Artifacts, "write", refuse)
+        first = api.post("shares", json=sent)
+    assert first.status_code == 201
+    slug, path = first.json()["slug"], f"runs/{run_id}/archive.h5"
+    assert "has no file of generation 2" in detail(through(slug, path), 404)
+    again = api.post("shares", json=sent)
+    assert (again.status_code, again.json()["slug"]) == (200, slug)
+    assert through(slug, path).status_code == 200
+
+
+@pytest.mark.postgresql
+def test_a_share_whose_file_is_lost_gets_another_when_it_is_published_again(
+    api, services, through, archive, attempt, run_id
+):
+    slug, path = archive["slug"], f"runs/{run_id}/archive.h5"
+    (Path(services.artifacts.root) / "shares" / f"{slug}.h5").unlink()
+    assert f"The store has lost shares/{slug}.h5" in detail(through(slug, path), 500)
+    # The newest file of the generation, which is another one by now.
+    attempt.save(2, file.dump({"archive": {"cell": [3, 7, 8]}}, {"format": file.FORMAT}))
+    sent = {"run": str(run_id), "title": "Swimmers", "credit": "Ada", "licence": "CC0-1.0"}
+    assert api.post("shares", json={**sent, "generation": 2}).json()["slug"] == slug
+    answer = through(slug, path)
+    assert list(file.load(answer.content)[0]["archive"]["cell"]) == [3, 7, 8]
+    with services.sessions.read() as session:
+        row = session.get(Artifact, f"shares/{slug}.h5")
+    assert services.artifacts.read_verified(row.path, row.sha256) == answer.content
+    assert row.size == len(answer.content)
+
+
+@pytest.mark.postgresql
+def test_a_share_that_is_revoked_while_its_file_is_written_leaves_none(
+    api, services, attempt, run_id, monkeypatch
+):
+    write = Artifacts.write
+
+    def revoke_then_write(artifacts, path, data):
+        api.delete(f"shares/{path.removeprefix('shares/').removesuffix('.h5')}")
+        return write(artifacts, path, data)
+
+    with monkeypatch.context() as slow:
+        slow.setattr(Artifacts, "write", revoke_then_write)
+        slug = api.post("shares", json={"run": str(run_id)}).json()["slug"]
+    path = f"shares/{slug}.h5"
+    with services.sessions.read() as session:
+        assert session.get(Artifact, path) is None
+    assert services.artifacts.find(path)
+    assert remove_files(services.sessions, services.artifacts)
+    assert services.artifacts.find(path) is None
 
 
 def test_renderings_for_shares_wait_last_and_are_limited(
@@ -124,18 +202,12 @@ def test_a_deleted_run_leaves_the_commons_until_restored(
 
 
 def test_a_client_carries_out_a_shared_run_again(address, archive, spec):
-    at = shared.address(f"{address}/s/{archive['slug']}")
+    at = sharing.address(f"{address}/s/{archive['slug']}")
     assert at
     with Client(address) as client:
         run = client.submit(f"{address}/s/{archive['slug']}")
-        assert run.spec == shared.spec(at)
+        assert run.spec == sharing.spec(at)
     assert run.id != archive["run"]
-
-
-def test_the_address_of_an_archive_stands_for_its_best(archive):
-    at = shared.address(archive["url"])
-    assert at
-    assert shared.creature(at)["sha256"] == archive["cover"]
 
 
 def test_all_creatures_of_an_archive_are_imported_the_best_first(
@@ -143,26 +215,20 @@ def test_all_creatures_of_an_archive_are_imported_the_best_first(
 ):
     attempt.record(report(3, {3: 9.0, 8: 9.0}), 1.0)  # Later than the share.
     found = api.get(f"runs/{archive['run']}/archive", params={"generation": 2}).json()
-    (best, other) = found["creature"]
-    assert found["fitness"] == [2.0, 1.5]
     names = api.get(f"shares/{archive['slug']}/creatures.json").json()["creatures"]
-    assert names == [best, other]
+    assert (names, found["fitness"]) == (found["creature"], [2.0, 1.5])
     with Client(address) as client:
         assert [one.sha for one in client.import_all(archive["url"])] == names
-        (one,) = client.import_all(f"{archive['url']}/creatures/{other}")
-        assert one.sha == other
-    at = shared.address(archive["url"])
-    assert at
-    assert [one["sha256"] for one in shared.creatures(at)] == names
-    assert all(one["ancestors"] == [] for one in shared.creatures(at))
-    whole = shared.Address.read
+        (one,) = client.import_all(f"{archive['url']}/creatures/{names[1]}")
+        assert one.sha == names[1]
+        whole = sharing.Address.read
 
-    def forged(self, path, headers=None, **params):
-        document = whole(self, path, headers, **params)
-        if params.get("creature") == other:
-            document["identity"]["task"]["steps"] += 1
-        return document
+        def forged(self, path, headers=None, **params):
+            document = whole(self, path, headers, **params)
+            if params.get("creature") == names[1]:
+                document["identity"]["task"]["steps"] += 1
+            return document
 
-    monkeypatch.setattr(shared.Address, "read", forged)
-    with Client(address) as client, pytest.raises(ValueError, match="sha256"):
-        list(client.import_all(archive["url"]))
+        monkeypatch.setattr(sharing.Address, "read", forged)
+        with pytest.raises(ValueError, match="sha256"):
+            list(client.import_all(archive["url"]))

@@ -9,10 +9,11 @@ from answers import detail, fields
 from pydantic import SecretStr
 from reports import audit
 
-from microcosmos.archive import creature
-from server.auth.authorize import SHARE_HEADER
-from server.renderings import storage as renderings
-from server.tables import AUDIT, LOOP, PREVIEW, Share
+from microcosmos.archive import creature, creature_h5
+from microcosmos_server.auth.authorize import SHARE_HEADER
+from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.shares.schemas import Terms
+from microcosmos_server.tables import AUDIT, LOOP, PREVIEW, Share
 
 STRANGE = {"Host": "microcosmos.example"}
 
@@ -38,8 +39,20 @@ def test_a_share_has_a_slug_that_cannot_be_guessed(api, shared, known):
     assert api.get("shares").json()["items"] == [shared]
 
 
+def test_each_field_of_a_publisher_is_stored_compared_and_read(api, known, shared):
+    for name, declared in Terms.model_fields.items():
+        value = {bool: True, str: "x"}.get(declared.annotation, "2040-01-01T00:00:00Z")
+        if declared.annotation == str | None:
+            value = "a text"
+        sent = {"creature": known, "title": "A swimmer", name: value}
+        other = api.post("shares", json=sent)
+        assert other.status_code == 201, f"another {name} makes another share"
+        assert other.json()[name] == value
+        assert api.post("shares", json=sent).json() == other.json()
+
+
 def test_a_share_states_the_verdict_of_its_creatures_audit(
-    api, through, services, shared, known, statements
+    api, through, services, shared, known
 ):
     slug = shared["slug"]
     assert shared["trusted"] is None
@@ -48,11 +61,6 @@ def test_a_share_states_the_verdict_of_its_creatures_audit(
         assert api.get(f"shares/{slug}").json()["trusted"] is trusted
         assert api.get("shares").json()["items"][0]["trusted"] is trusted
         assert through(slug, f"creatures/{known}/verdict").json() == {"trusted": trusted}
-    one = statements(api.get, "shares")
-    for title in ("Two", "Three"):
-        more = api.post("shares", json={"creature": known, "title": title}).json()
-        assert more["trusted"] is False
-    assert statements(api.get, "shares") == one
 
 
 def test_publishing_twice_gives_the_same_live_share(api, services, shared, known):
@@ -76,6 +84,7 @@ def test_publishing_twice_gives_the_same_live_share(api, services, shared, known
         ({"creature": "ab" * 32, "generation": 3}, "generation"),
         ({"creature": "ab" * 32, "expires_at": "2030-01-01T00:00:00"}, "expires_at"),
         ({"creature": "ab" * 32, "expires_at": "2020-01-01T00:00:00Z"}, "expires_at"),
+        ({"creature": "ab" * 32, "expires_at": "9999-12-31T23:59:59-05:00"}, "expires_at"),
         ({"creature": "ab" * 32, "title": " "}, "title"),
         ({"creature": "ab" * 32, "credit": [""]}, "credit.0"),
         ({"creature": "ab" * 32, "sing": True}, "sing"),
@@ -108,15 +117,6 @@ def test_a_share_shows_its_creature_and_no_other(api, through, shared, known, ot
     assert through("A" * 32, f"creatures/{known}").status_code == 404
 
 
-def test_caches_keep_the_answers_of_a_share_apart(api, through, shared, known):
-    for answer in (
-        api.get(f"creatures/{known}"),
-        through(shared["slug"], f"creatures/{known}"),
-    ):
-        assert SHARE_HEADER in answer.headers["vary"]
-    assert answer.headers["cache-control"] == "no-cache"
-
-
 def test_a_revoked_share_is_gone(api, through, shared, known):
     under = f"shares/{shared['slug']}"
     for _ in range(2):
@@ -133,30 +133,16 @@ def test_a_revoked_share_is_gone(api, through, shared, known):
     assert api.delete(f"shares/{'A' * 32}").status_code == 404
 
 
-def test_an_expired_share_is_gone(api, through, services, known):
+def test_an_expired_share_is_gone(api, through, update_rows, known):
     until = datetime.now(UTC) + timedelta(days=1)
     sent = {"creature": known, "listed": True, "expires_at": until.isoformat()}
     slug = api.post("shares", json=sent).json()["slug"]
     assert api.get(f"shares/{slug}").status_code == 200
-    with services.sessions.write.begin() as session:
-        session.get_one(Share, slug).expires_at = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
+    update_rows(Share, expires_at=datetime(2026, 1, 2, 3, 4, tzinfo=UTC))
     answer = through(slug, f"creatures/{known}")
     assert detail(answer, 410) == "This share expired on 02 January 2026, 03:04 UTC."
     assert api.get("commons").json()["items"] == []
     assert api.get("shares").json()["items"][0]["state"] == "expired"
-
-
-def test_the_commons_page_through_listed_shares(api, shared, known):
-    listed = [
-        api.post("shares", json={"creature": known, "title": title, "listed": True}).json()
-        for title in "abc"
-    ]
-    first = api.get("commons", params={"limit": 2}).json()
-    rest = api.get("commons", params={"limit": 2, "cursor": first["next"]}).json()
-    found = [*first["items"], *rest["items"]]
-    assert found == listed[::-1]
-    assert rest["next"] is None
-    assert api.get("commons", params={"cursor": "x"}).status_code == 422
 
 
 def test_answers_keep_a_share_out_of_search_engines(api, through, shared, known):
@@ -167,32 +153,23 @@ def test_answers_keep_a_share_out_of_search_engines(api, through, shared, known)
     ):
         assert headers["referrer-policy"] == "no-referrer"
         assert headers["x-robots-tag"] == "noindex"
-        assert headers["cache-control"] == "no-cache"
+        assert headers["cache-control"] == "private, no-cache"
     listed = api.post("shares", json={"creature": known, "listed": True}).json()
     assert "x-robots-tag" not in api.get(f"shares/{listed['slug']}").headers
 
 
-def test_anonymous_requests_read_shares_and_nothing_else(serve, services, identity):
-    with serve(token=SecretStr("secret")) as address, httpx.Client(headers=STRANGE) as client:
-        api = f"{address}/api/v1"
-        bearer = {"Authorization": "Bearer secret"}
-        sent = creature.document(identity(3), None, None)
-        known = client.post(f"{api}/creatures", json=sent, headers=bearer).json()["creature"]
-        asked = {"creature": known}
-        slug = client.post(f"{api}/shares", json=asked, headers=bearer).json()["slug"]
-        for path in (f"shares/{slug}", "commons"):
-            assert client.get(f"{api}/{path}").status_code == 200, path
-        holder = {SHARE_HEADER: slug}
-        assert client.get(f"{api}/creatures/{known}", headers=holder).status_code == 200
-        assert client.get(f"{api}/shares", headers=holder).status_code == 403
-        assert client.post(f"{api}/shares", json=asked, headers=holder).status_code == 403
-        for path in ("shares", "shares/", f"creatures/{known}", "runs", f"shares/{slug}x"):
-            assert client.get(f"{api}/{path}").status_code in (401, 404), path
-        assert client.get(f"{api}/shares").status_code == 401
-        assert client.post(f"{api}/shares", json=asked).status_code == 401
-        assert client.delete(f"{api}/shares/{slug}").status_code == 401
-        assert client.post(f"{api}/commons").status_code == 401
-        assert client.get(f"{address}/s/{slug}").status_code in (200, 503)
+def test_anonymous_requests_read_shares_and_nothing_else(served, shared, known):
+    holder = {SHARE_HEADER: shared["slug"]}
+    address = served(token=SecretStr("secret"))
+    with httpx.Client(base_url=f"{address}/api/v1/", headers=STRANGE) as client:
+        for path in (f"shares/{shared['slug']}", "commons"):
+            assert client.get(path).status_code == 200, path
+        assert client.get(f"creatures/{known}", headers=holder).status_code == 200
+        assert client.get("shares", headers=holder).status_code == 403
+        assert client.post("shares", json={}, headers=holder).status_code == 403
+        for path in ("shares", "shares/", f"creatures/{known}", f"shares/{shared['slug']}x"):
+            assert client.get(path).status_code in (401, 404), path
+        assert client.post("commons").status_code == 401
 
 
 def test_licence_and_credit_travel_with_the_file(api, through, known):
@@ -201,6 +178,17 @@ def test_licence_and_credit_travel_with_the_file(api, through, known):
     document = through(slug, f"creatures/{known}").json()
     assert (document["licence"], document["credit"]) == ("CC0-1.0", ["Ada", "Bob"])
     assert api.get(f"creatures/{known}").json()["credit"] == ["Ada"]
+
+
+def test_what_is_published_with_much_credit_and_a_long_licence_can_be_read(api, through, file):
+    names = [f"Ada {i}" for i in range(60)]
+    sent = {"creature": file["sha256"], "credit": names[40:], "licence": "a" * 10_000}
+    api.post("creatures", json=file | {"credit": names[:40]})
+    slug = api.post("shares", json=sent).json()["slug"]
+    path = f"creatures/{sent['creature']}"
+    for name, read in (("", creature.parse), ("/creature.h5", creature_h5.read)):
+        found = read(through(slug, f"{path}{name}").content)
+        assert (found["licence"], found["credit"]) == (sent["licence"], names)
 
 
 def test_holders_of_a_share_read_films_but_order_none(through, services, shared, known):
@@ -225,7 +213,7 @@ def test_holders_of_a_share_do_not_read_renderer_errors(api, services, shared, k
     """They may name files, hosts and whatever else stands in an error."""
     job, _ = services.jobs.renderings.get_jobs()
     raised = "OSError: [Errno 28] No space left on device: '/home/ada/data/artifacts/x.part'"
-    services.jobs.give_up(job, f'Traceback\n  File "a.py"\n    begin()\n{raised}\n')
+    services.jobs.give_up(job, raised)
     owner = api.get(f"creatures/{known}/preview.png")
     assert "/home/ada" in owner.json()["detail"]
     stranger = api.get(f"shares/{shared['slug']}/preview.png")

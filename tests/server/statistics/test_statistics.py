@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from microcosmos.statistics.testing import holm
-from server.tables import Generation, Run
+from microcosmos.statistics.effects import holm
+from microcosmos_server.tables import Generation, Run
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1, 0.2]}
 SCORES = np.array([[5.0, 3, 4, 1, 2], [6, 9, 8, 7, 2.5], [12, 11, 10, 14, 13]])
@@ -19,7 +19,7 @@ SCORES = np.array([[5.0, 3, 4, 1, 2], [6, 9, 8, 7, 2.5], [12, 11, 10, 14, 13]])
 def write(services):
     """A function that writes two generations of a run, and its status."""
 
-    def record(run, score, status="finished", evaluations=8):
+    def record(run, score, status="finished", evaluations=8, again=0):
         others = {"infeasible": 0, "seconds": 1.0, "mean": 0.1}
         with services.sessions.write.begin() as session:
             row = session.get_one(Run, UUID(run))
@@ -31,7 +31,7 @@ def write(services):
                     Generation(
                         run_id=row.id,
                         generation=number,
-                        evaluations=evaluations * number,
+                        evaluations=evaluations * number + again * (number == 2),
                         qd_score=share * score,
                         coverage=share,
                         best=share,
@@ -83,12 +83,17 @@ def test_cases_are_compared_as_in_the_library(api, sweep):
     assert found["refusal"] is None
 
 
-def test_curves_at_evaluations_and_evaluations_to_a_value_are_measures(api, sweep):
-    found = read(api, sweep, measures="qd_score@8,qd_score>=4").json()
-    early, first = found["measures"]
-    assert early["groups"][0]["values"] == (SCORES[0] / 2).tolist()
-    assert first["groups"][0]["values"] == [16, None, 16, None, None]
-    assert first["less_is_better"]
+def test_evaluations_of_elites_again_are_not_counted(api, spec, write):
+    """All runs made two generations, with other numbers of elites at the end."""
+    asked = {"spec": {**spec, "search": spec["search"] | {"reevaluation": {"every": 5}}}}
+    made = api.post("sweeps", json={**asked, "seeds": 5, "grid": VISCOSITIES}).json()
+    for case, scores in zip(made["cases"], SCORES, strict=True):
+        for again, (run, score) in enumerate(zip(case["runs"], scores.tolist(), strict=True)):
+            write(run, score, again=again)
+    for measures in ("qd_score,corrected_qd_score", "qd_score@16,corrected_qd_score@16"):
+        plain, corrected = read(api, made, measures=measures).json()["measures"]
+        np.testing.assert_allclose(plain["groups"][0]["values"], SCORES[0])
+        np.testing.assert_allclose(corrected["groups"][2]["values"], 0.8 * SCORES[2])
 
 
 def test_tables_are_downloaded(api, sweep):
@@ -150,16 +155,33 @@ def test_failed_runs_are_left_out_and_said(api, sweep, services):
     found = read(api, sweep).json()
     assert found["groups"][0]["n"] == 4
     assert found["refusal"].endswith("got 4 in 'viscosity 0.05'.")
-    assert found["cautions"][0].startswith("1 run is left out")
+    said = "1 run is left out, since it failed or was cancelled."
+    assert found["cautions"][0] == said
+    latex = read(api, sweep, "statistics.tex").text
+    assert f"\n% \\caption{{{said} Groups: " in latex
+    rows = list(csv.DictReader(StringIO(read(api, sweep, "statistics.csv").text)))
+    left_out = [row["run"] for row in rows if row["table"] == "left out"]
+    assert left_out == [sweep["cases"][0]["runs"][0]]
+    assert left_out[0] not in [row["run"] for row in rows if row["table"] == "run"]
+
+
+@pytest.mark.parametrize("measures", ["qd_score", "qd_score@8"])
+def test_negative_fitness_is_said_whatever_is_measured(api, sweep, services, measures):
+    with services.sessions.write.begin() as session:
+        run = UUID(sweep["cases"][0]["runs"][0])
+        # Negative in the first generation alone.
+        session.get_one(Generation, (run, 1)).best = -0.5
+    found = read(api, sweep, measures=measures).json()
+    assert any(one.startswith("Some runs have negative fitness") for one in found["cautions"])
+    share = 0.5 if "@" in measures else 1.0
+    values = found["measures"][0]["groups"][0]["values"]
+    np.testing.assert_allclose(values, share * SCORES[0])
 
 
 def test_wrong_use_is_refused_with_a_sentence(api, sweep, write, services):
     unknown = read(api, sweep, measures="beauty!")
     assert (unknown.status_code, unknown.json()["errors"][0]["field"]) == (422, "measures")
-    assert read(api, sweep, measures=",".join(["best"] * 13)).status_code == 422
-    missing = read(api, sweep, measures="beauty")
-    assert missing.status_code == 409
-    assert "a curve must be one of best" in missing.json()["detail"]
+    assert read(api, sweep, measures="beauty").status_code == 409
     with services.sessions.write.begin() as session:
         run = UUID(sweep["cases"][0]["runs"][0])
         session.get_one(Generation, (run, 2)).evaluations = 20

@@ -7,10 +7,10 @@ import pytest
 from object_store import new_prefix
 from pydantic import ValidationError
 
-from server.core.errors import StoreUnavailable
-from server.settings import Settings
-from server.storage import artifacts
-from server.storage.artifacts import CHUNK, Artifacts, superfluous
+from microcosmos_server.core.errors import FileLost, StoreUnavailable
+from microcosmos_server.settings import Settings
+from microcosmos_server.storage import artifacts
+from microcosmos_server.storage.artifacts import CHUNK, Artifacts, superfluous
 
 
 @pytest.fixture(params=["folder", "s3"])
@@ -41,9 +41,9 @@ def test_a_large_file_is_streamed_in_pieces(files):
 
 
 def test_a_missing_file_is_no_outage(files):
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileLost):
         files.read("runs/1/never.h5")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileLost):
         files.stream("runs/1/never.h5", 0, 5)
     assert files.read_verified("runs/1/never.h5", "0" * 64) is None
 
@@ -55,7 +55,7 @@ def test_deleting_a_folder_leaves_its_neighbours(files):
     files.delete("runs/1/")
     for path in ("runs/1/a.h5", "runs/1/b.h5", "runs/2/a.h5"):
         assert files.read_verified(path, "") is None
-        with pytest.raises(FileNotFoundError):
+        with pytest.raises(FileLost):
             files.read(path)
     assert files.read("runs/10/a.h5") == b"content"
 
@@ -63,6 +63,17 @@ def test_deleting_a_folder_leaves_its_neighbours(files):
 def test_deleting_what_is_gone_is_no_error(files):
     files.delete("runs/1/never.h5")
     files.delete("runs/1/")
+
+
+def test_a_folder_that_was_moved_to_another_disk_is_deleted_there(tmp_path):
+    files = Artifacts(str(tmp_path / "store"))
+    files.write("runs/1/a.h5", b"content")
+    folder = tmp_path / "store" / "runs" / "1"
+    moved = folder.rename(tmp_path / "moved")
+    folder.symlink_to(moved)
+    files.delete("runs/1/")
+    assert not moved.exists()
+    assert not folder.is_symlink()
 
 
 def test_a_full_disk_leaves_the_previous_file_and_no_part(tmp_path, monkeypatch):
@@ -108,7 +119,7 @@ def test_a_server_that_is_not_there_is_an_outage(monkeypatch, object_store):
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:1")
     files = Artifacts(new_prefix())
     for act in (lambda: files.write("a", b""), lambda: files.read("a")):
-        with pytest.raises(StoreUnavailable, match=r"127\.0\.0\.1:1"):
+        with pytest.raises(StoreUnavailable, match="endpoint URL: the store"):
             act()
 
 
@@ -116,6 +127,7 @@ def test_a_server_that_is_not_there_is_an_outage(monkeypatch, object_store):
     ("url", "needed"),
     [
         ("gs://bucket/prefix", "must be a folder or s3://BUCKET/PREFIX; got gs://"),
+        ("file://", "must be a folder or s3://BUCKET/PREFIX"),
         ("s3://", "must be a folder or s3://BUCKET/PREFIX"),
         ("s3://key:hidden@bucket/prefix", "credentials into AWS_ACCESS_KEY_ID"),
     ],

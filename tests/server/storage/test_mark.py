@@ -1,18 +1,22 @@
 """A store carries the id of its installation, and a worker with another store takes no run."""
 
 import shutil
+from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
 import httpx
 import pytest
+from sqlalchemy import text
 
-from server.schedule.take import take
-from server.storage import mark
-from server.storage.artifacts import Artifacts
-from server.workers import registry
-from worker.device import Device
-from worker.readiness import Readiness
+from microcosmos_server.maintenance import __main__ as maintenance
+from microcosmos_server.schedule.take import take
+from microcosmos_server.storage import mark
+from microcosmos_server.storage.artifacts import Artifacts
+from microcosmos_server.tables import migrations
+from microcosmos_server.workers import registry
+from microcosmos_worker.device import Device
+from microcosmos_worker.readiness import Readiness
 
 pytestmark = pytest.mark.postgresql
 
@@ -59,7 +63,8 @@ def test_the_store_of_another_installation_is_named(services, tmp_path):
     known = str(uuid4())
     other.write(mark.MARK, known.encode())
     reason = fault(services, other)
-    assert reason.startswith(f"The store {tmp_path} belongs to installation {known}")
+    assert reason.startswith(f"The store belongs to installation {known}")
+    assert str(tmp_path) not in reason, "readers of the page need no path of the server"
     mark.leave(services.sessions, other)
     assert (tmp_path / mark.MARK).read_text() == known, "it stays the other's"
 
@@ -86,7 +91,7 @@ def test_a_worker_without_the_store_takes_no_run_until_it_is_there(
         assert not readiness.check()
     report(services, readiness)
     assert take(services, "lost") is None
-    assert reason(run_id).startswith("Worker lost: The store ")
+    assert reason(run_id).startswith("Worker lost: The store has no file")
     (store / mark.MARK).write_text(kept)
     assert readiness.check()
     assert readiness.problem is None
@@ -100,6 +105,50 @@ def report(services, readiness):
     kind, text = (found.kind, found.text) if found else (None, None)
     lost = (services.sessions, "lost", "a device", 8 << 30, "idle")
     registry.report(*lost, problem=text, problem_kind=kind)
+
+
+@pytest.mark.parametrize(
+    ("revision", "begin"),
+    [
+        ("9999", "The tables of the database have revision 9999, which version "),
+        ("0000", "The tables of the database have revision 0000, and version "),
+    ],
+)
+def test_a_worker_takes_no_run_from_tables_of_another_version(
+    services, run_id, readiness, reason, revision, begin, monkeypatch
+):
+    (own,) = migrations.known()
+    monkeypatch.setattr(migrations, "known", lambda: (own, "0000"))
+    with revised(services, revision):
+        assert not readiness.check()
+        assert readiness.problem.kind == "schema"
+        assert readiness.problem.text.startswith(begin)
+        report(services, readiness)
+        assert reason(run_id).startswith(f"Worker lost: {begin}")
+    assert readiness.check()
+
+
+def test_later_tables_are_neither_upgraded_nor_copied(services, tmp_path, monkeypatch):
+    monkeypatch.setattr(maintenance, "connect", lambda _: services)
+    monkeypatch.setattr(maintenance, "from_environment", lambda: services.settings)
+    with revised(services, "9999"):
+        with pytest.raises(migrations.SchemaError, match=r"which version .* does not know"):
+            migrations.upgrade(services.sessions)
+        for act in ("backup", str(tmp_path / "copy")), ("check",):
+            with pytest.raises(SystemExit, match="have revision 9999"):
+                maintenance.main([*act])
+    assert not (tmp_path / "copy").exists()
+
+
+@contextmanager
+def revised(services, revision):
+    """Another revision of the tables for a while, as another version leaves it."""
+    set_to = text("UPDATE alembic_version SET version_num = :revision")
+    for found in (revision, migrations.newest()):
+        with services.sessions.write.begin() as session:
+            session.execute(set_to, {"revision": found})
+        if found == revision:
+            yield
 
 
 def test_a_good_store_is_not_read_before_every_job(services, readiness, statements):

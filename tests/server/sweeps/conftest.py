@@ -4,8 +4,8 @@ from uuid import UUID
 
 import pytest
 
-from server.attempts.attempt import Attempt
-from server.attempts.claim import claim
+from microcosmos_server.attempts.attempt import Attempt
+from microcosmos_server.attempts.claim import claim
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 

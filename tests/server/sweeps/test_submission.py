@@ -6,9 +6,8 @@ import pytest
 from sqlalchemy import select
 
 from microcosmos.archive import creature
-from server.creatures import initial
-from server.maintenance.reconcile import reconcile
-from server.tables import Run, Sweep
+from microcosmos_server.creatures import initial
+from microcosmos_server.tables import Run, Sweep
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
@@ -109,7 +108,7 @@ def test_an_error_of_the_spec_is_reported_under_spec(api, spec):
     assert error["field"] == "spec.world.viscosity"
     spec["world"]["viscosity"], spec["seed"] = 0.1, 2**32 - 1
     (error,) = api.post("sweeps", json={"spec": spec, "seeds": 2}).json()["errors"]
-    assert (error["field"], "seeds end at 4294967296" in error["message"]) == ("seeds", True)
+    assert (error["field"], "seeds end at 4294967296" in error["reason"]) == ("seeds", True)
 
 
 def test_memory_is_refused_at_the_value_that_needs_it(api, post, spec):
@@ -144,18 +143,11 @@ def test_the_same_key_at_once_gives_one_sweep(api, waiting, spec):
     assert sorted(answer.status_code for answer in answers) == [200] * 3 + [202]
     assert len({answer.json()["id"] for answer in answers}) == 1
     assert len(waiting()) == 2
-    for path, other in (("sweeps", {**asked, "seeds": 3}), ("runs", spec)):
+    others = ("sweeps", {**asked, "seeds": 3}), ("sweeps?priority=low", asked), ("runs", spec)
+    for path, other in others:
         refused = api.post(path, json=other, headers=headers)
         assert (refused.status_code, refused.json()["title"]) == (422, "Idempotency key reused")
         assert f"sweep {answers[0].json()['id']}" in refused.json()["detail"]
-
-
-def test_sweeps_take_integers_beyond_canonical_json(api, spec):
-    asked = {"spec": spec, "grid": {"search.stop.evaluations": [10**20, 10**21]}}
-    answer = api.post("sweeps", json=asked, headers={"Idempotency-Key": "large"})
-    assert answer.status_code == 202
-    run = api.get(f"runs/{answer.json()['cases'][0]['runs'][0]}").json()
-    assert run["spec"]["search"]["stop"]["evaluations"] == 10**20
 
 
 @pytest.fixture
@@ -166,28 +158,12 @@ def elite(claimed, run_id, report, identity):
     return creature.name(identity(1000))
 
 
-def test_initial_creatures_of_a_sweep_outlive_their_run(
-    runs_of, claimed, api, services, post, spec, run_id, elite
-):
-    spec["search"]["initial"] = [elite]
-    sweep = post(seeds=2, grid=VISCOSITIES).json()
-    api.delete(f"runs/{run_id}")
-    with services.sessions.write.begin() as session:
-        session.get_one(Run, run_id).purge_at = session.get_one(Run, run_id).deleted_at
-    reconcile(services)
-    assert api.get(f"runs/{run_id}").status_code == 404
-    assert api.get(f"creatures/{elite}").status_code == 200
-    for run in runs_of(sweep):
-        (file,) = claimed(run).initial()
-        assert file["sha256"] == elite
-
-
 @pytest.mark.parametrize(
     ("asked", "initial", "field"),
     [
         ({}, "ab" * 32, "spec.search.initial"),
         ({"grid": {"search.initial": [[], ["ab" * 32]]}}, None, "grid.search.initial[1]"),
-        ({"grid": {"control.timer": ["linear"], **VISCOSITIES}}, None, "spec.control: inputs"),
+        ({"grid": {"control.timer": ["linear"], **VISCOSITIES}}, None, "spec.control.inputs"),
     ],
 )
 def test_a_sweep_that_could_not_begin_is_refused(api, post, spec, elite, asked, initial, field):

@@ -3,27 +3,17 @@
 from datetime import UTC, datetime
 from uuid import UUID
 
-import httpx
 import pytest
-from sqlalchemy import delete, update
+from sqlalchemy import delete
 
-from server.maintenance.reconcile import delete_empty_sweeps, reconcile
-from server.tables import Run
-
-
-def test_single_runs_are_taken_before_those_of_a_sweep(runs_of, api, waiting, six, spec):
-    single = api.post("runs", json=spec).json()["id"]
-    ids = runs_of(six)
-    assert waiting() == [single, *ids]
-    assert api.post("runs/estimate", json=spec).json()["queue"]["runs_ahead"] == 1
-    both = api.post("sweeps/estimate", json={"spec": spec}).json()["queue"]["runs_ahead"]
-    assert both == 7
+from microcosmos_server.auth import tokens
+from microcosmos_server.maintenance.reconcile import delete_empty_sweeps, reconcile
+from microcosmos_server.tables import Run
 
 
-def test_runs_resumed_together_keep_their_order(runs_of, services, post, waiting):
+def test_runs_resumed_together_keep_their_order(runs_of, update_rows, post, waiting):
     sweep = post(seeds=30).json()
-    with services.sessions.write.begin() as session:
-        session.execute(update(Run).values(queued_at=datetime(2026, 1, 1, tzinfo=UTC)))
+    update_rows(Run, queued_at=datetime(2026, 1, 1, tzinfo=UTC))
     assert waiting() == runs_of(sweep)
 
 
@@ -41,11 +31,10 @@ def test_an_estimate_is_of_all_runs_together(api, spec):
 
 
 def test_an_estimate_adds_up_the_seconds_of_runs_that_were_measured(
-    claimed, api, services, run_id, report, spec
+    claimed, api, run_id, report, spec
 ):
     attempt = claimed(run_id)
-    with services.sessions.write.begin() as session:
-        session.get_one(Run, run_id).device = "cpu, a device, jaxlib 1"
+    attempt.record_device("cpu, a device, jaxlib 1")
     for generation in (1, 2, 3):
         attempt.record(report(generation), 2.0)
     one = api.post("runs/estimate", json=spec).json()["seconds"]
@@ -61,18 +50,6 @@ def test_a_list_has_runs_of_one_sweep_or_of_none(runs_of, api, post, spec, six):
     alone = api.get("runs", params={"sweep": "none"}).json()["items"]
     assert [run["id"] for run in alone] == [single]
     assert api.get("runs", params={"sweep": "x"}).status_code == 422
-
-
-def test_sweeps_are_listed_in_pages_newest_first(api, post):
-    ids = [post(name=f"{i}").json()["id"] for i in range(3)]
-    first = api.get("sweeps", params={"limit": 2}).json()
-    assert [sweep["id"] for sweep in first["items"]] == [ids[2], ids[1]]
-    rest = api.get("sweeps", params={"limit": 2, "cursor": first["next"]}).json()
-    assert ([sweep["id"] for sweep in rest["items"]], rest["next"]) == ([ids[0]], None)
-    plain = httpx.get(f"{api.base_url}sweeps?limit=2&cursor={first['next']}")
-    assert plain.json() == rest, "an address has it as it is"
-    for cursor in ("x", "2026-01-01T00:00:00~x", "9999-99-99~" + ids[0]):
-        assert api.get("sweeps", params={"cursor": cursor}).status_code == 422
 
 
 def test_actions_on_a_sweep_list_skipped_runs(runs_of, claimed, api, waiting, six, report):
@@ -99,6 +76,20 @@ def test_actions_on_a_sweep_list_skipped_runs(runs_of, claimed, api, waiting, si
     assert cancelled["progress"] == pytest.approx(1 / 6)
     again = api.post(f"sweeps/{six['id']}/cancel").json()
     assert (again["changed"], len(again["skipped"])) == ([], 6)
+    some = {"runs": [str(first), *cancelled["changed"][1:]]}
+    back = api.post(f"sweeps/{six['id']}/uncancel", json=some).json()
+    assert back["status_counts"] == {"finished": 1, "cancelled": 1, "queued": 4}
+    assert back["changed"] == some["runs"][1:]
+    assert [one["run"] for one in back["skipped"]] == [str(first)]
+
+
+def test_runs_beyond_a_quota_stay_paused_with_the_reason(api, services, six, update_rows):
+    owner = tokens.create(services, "anne", "write", max_queued=4).token.id
+    update_rows(Run, owner=owner, status="paused")
+    resumed = api.post(f"sweeps/{six['id']}/resume").json()
+    assert resumed["status_counts"] == {"queued": 4, "paused": 2}
+    words = "`anne` may have 4 queued runs; it has 4, and this request adds 1."
+    assert [one["reason"] for one in resumed["skipped"]] == [words] * 2
 
 
 def test_a_sweep_has_a_name_that_can_be_changed(api, six):
@@ -119,44 +110,20 @@ def test_a_deleted_sweep_is_hidden_and_restored_unchanged(runs_of, claimed, api,
     attempt = claimed(first)
     refused = api.delete(path).json()
     assert (refused["changed"], len(refused["skipped"])) == ([], 6)
-    assert "cancel it first" in refused["skipped"][0]["reason"]
     api.post(f"{path}/cancel")
     before = api.get(path).json()
-    deleted = api.delete(path)
-    assert deleted.status_code == 200
-    assert (deleted.json()["changed"], deleted.json()["skipped"][0]["run"]) == (others, first)
-    assert (deleted.json()["total"], deleted.json()["deleted"]) == (1, 5)
-    assert len(api.get("sweeps").json()["items"]) == 1
+    deleted = api.delete(path).json()
+    assert (deleted["changed"], deleted["skipped"][0]["run"]) == (others, first)
+    assert (deleted["total"], deleted["deleted"]) == (1, 5)
     attempt.cancel()
     api.delete(path)
     assert api.get("sweeps").json()["items"] == api.get("runs").json()["items"] == []
-    (listed,) = api.get("sweeps", params={"deleted": True}).json()["items"]
-    assert (listed["id"], listed["total"], listed["deleted"]) == (six["id"], 0, 6)
-    assert api.get(path).json() == listed
+    assert api.get("sweeps", params={"deleted": True}).json()["items"] == [api.get(path).json()]
     empty = api.get(f"{path}/summary").json()["cases"]
-    assert [(case["members"], case["generation"], case["finals"]) for case in empty] == 2 * [
-        ([], [], {})
-    ]
+    assert [(case["members"], case["generation"]) for case in empty] == 2 * [([], [])]
     reconcile(services)
-    restored = api.post(f"{path}/restore").json()
-    assert set(restored["changed"]) == {first, *others}
+    assert set(api.post(f"{path}/restore").json()["changed"]) == {first, *others}
     assert api.get(path).json() == {**before, "status_counts": {"cancelled": 6}}
-    assert api.get("sweeps", params={"deleted": True}).json()["items"] == []
-    assert api.post(f"{path}/restore").json()["changed"] == []
-
-
-def test_changes_of_a_sweep_are_published(address, six, api, published):
-    assert published()[-1] == ("sweep", {"sweep": six["id"]})
-    api.post(f"sweeps/{six['id']}/cancel")
-    kinds = [kind for kind, _ in published()]
-    assert kinds == ["sweep", *["run"] * 6, "sweep"]
-
-
-def test_an_unknown_sweep_is_not_found(address):
-    unknown = f"{address}/api/v1/sweeps/{UUID(int=5)}"
-    for path in ("", "/summary", "/curves"):
-        assert httpx.get(unknown + path).status_code == 404
-    assert httpx.post(f"{unknown}/cancel").status_code == 404
 
 
 def test_a_sweep_ends_with_the_last_of_its_runs(api, services, six):

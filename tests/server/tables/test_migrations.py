@@ -4,10 +4,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from alembic import command
-from sqlalchemy import inspect
+from sqlalchemy import URL, inspect, make_url
 
-from server.core.database import connect
-from server.tables import migrations
+from microcosmos_server.core.database import connect
+from microcosmos_server.tables import migrations
 
 pytestmark = pytest.mark.postgresql
 
@@ -18,7 +18,7 @@ def test_migrated_tables_are_those_of_the_models(services):
 
 def test_several_processes_may_migrate_a_new_database_at_once(tmp_path):
     url = f"sqlite:///{tmp_path / 'new.sqlite'}"
-    several = [connect(url) for _ in range(4)]
+    several = [connect(make_url(url)) for _ in range(4)]
     with ThreadPoolExecutor() as pool:
         list(pool.map(migrations.upgrade, several))
     assert "runs" in inspect(several[0].engine).get_table_names()
@@ -27,7 +27,7 @@ def test_several_processes_may_migrate_a_new_database_at_once(tmp_path):
 
 
 def test_the_tables_can_be_taken_down_again(tmp_path):
-    sessions = connect(f"sqlite:///{tmp_path / 'new.sqlite'}")
+    sessions = connect(URL.create("sqlite", database=str(tmp_path / "new.sqlite")))
     migrations.upgrade(sessions)
     with sessions.engine.begin() as connection:
         command.downgrade(migrations.config(connection), "base")

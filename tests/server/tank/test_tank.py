@@ -6,11 +6,11 @@ from answers import errors
 from pose_streams import unpacked
 from reports import DEMO, audit
 
-from server.attempts.claim import claim
-from server.renderings import storage as renderings
-from server.runs.submission import submit
-from server.tables import AUDIT
-from server.tank.choosing import most_different
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.runs.submission import submit
+from microcosmos_server.tables import AUDIT
+from microcosmos_server.tank.routes import most_different
 
 pytestmark = pytest.mark.postgresql
 
@@ -44,10 +44,6 @@ def tank(api):
         return [(one["run"], one["generation"], one["fitness"]) for one in swimmers], runs
 
     return read
-
-
-def test_a_new_installation_has_an_empty_tank(api, run_id):
-    assert api.get("tank").json() == {"swimmers": [], "runs": []}
 
 
 def test_the_best_creature_of_a_run_comes_first_and_then_the_most_different(tank, evolve):
@@ -121,10 +117,6 @@ def test_the_face_of_a_run_is_its_best_creature(api, evolve):
     assert api.get(f"runs/{run}").json()["face"] == best
     (listed,) = api.get("runs").json()["items"]
     assert listed["face"] == best
-
-
-def test_a_run_without_elites_has_no_face(api, run_id):
-    assert api.get(f"runs/{run_id}").json()["face"] is None
 
 
 def test_the_rows_that_spread_most_are_chosen():

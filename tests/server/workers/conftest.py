@@ -2,7 +2,7 @@
 
 import pytest
 
-from server.workers import registry
+from microcosmos_server.workers import registry
 
 
 @pytest.fixture

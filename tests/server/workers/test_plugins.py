@@ -6,10 +6,10 @@ import pytest
 from answers import errors
 from declared import STRICT, A, B, declared
 
-from server.attempts.claim import claim
-from server.schedule.take import take
-from server.workers import plugins, registry
-from server.workers.plugins import KnownPlugins
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.schedule.take import take
+from microcosmos_server.specs.known_plugins import KnownPlugins
+from microcosmos_server.workers import plugins, registry
 
 
 def test_plug_ins_of_workers_appear_in_the_schemas(api, services, offer):
@@ -17,19 +17,19 @@ def test_plug_ins_of_workers_appear_in_the_schemas(api, services, offer):
     offer(plugins=declared())
     after = {one["experiment"]: one["schema"] for one in api.get("experiments").json()}
     search = after["quality-diversity"]
-    fitness = search["$defs"]["Task"]["properties"]["fitness"]
-    assert fitness["enum"][-2:] == ["through", "mine.straight"]
-    assert fitness["plugins"]["mine.straight"]["workers"] == ["worker"]
-    settings = search["$defs"]["Task"]["properties"]["plugin"]["parts"]["mine.straight"]
-    assert settings["properties"]["settings"]["properties"] == STRICT["properties"]
+    task = search["$defs"]["Task"]["properties"]
+    assert task["fitness"]["enum"][-2:] == ["through", "mine.straight"]
+    assert task["fitness"]["plugins"]["mine.straight"]["workers"] == ["worker"]
+    settings = task["plugin"]["parts"]["mine.straight"]["properties"]["settings"]
+    assert settings["properties"] == STRICT["properties"]
     axis = search["$defs"]["Descriptor"]["properties"]
-    assert axis["name"]["enum"][-1] == "mine.sway"
     assert axis["low"]["units"]["mine.sway"] == "cells"
     bodies = [one["properties"] for one in search["properties"]["body"]["oneOf"][-2:]]
     assert [one["builder"]["const"] for one in bodies] == ["mine.cross", "mine.wiggler"]
     pulse = search["properties"]["control"]["oneOf"][-1]["properties"]
     assert pulse["encoding"]["const"] == "mine.pulse"
-    assert "period" in pulse
+    emitters = search["$defs"]["Search"]["properties"]["emitters"]["items"]["oneOf"]
+    assert emitters[-1]["properties"]["operator"]["const"] == "mine.creep"
     assert after["gaits"]["properties"]["swimmers"]["items"]["enum"][-1] == "mine.wiggler"
     registry.retire(services.sessions, "worker")
     assert api.get("experiments").json() == before
@@ -55,12 +55,20 @@ def test_a_run_pins_plug_in_versions_and_settings(api, offer, mine):
     assert "plugin" not in api.post("runs", json=usual).json()["spec"]["task"]
 
 
-def test_a_plug_in_body_is_estimated_but_not_drawn(api, offer, mine):
+def test_a_plug_in_emitter_is_pinned_with_what_it_learns(api, offer, spec):
     offer(plugins=declared())
-    found = api.post("runs/estimate", json=mine).json()
-    chain = {**mine, "body": {"builder": "chain", "nodes": 40}}
-    assert found["memory_bytes"] == api.post("runs/estimate", json=chain).json()["memory_bytes"]
-    assert found["drawing"]["bodies"] == []
+    creep = {"operator": "mine.creep", "plugin": {"settings": {"strictness": 3}}}
+    search = {"generations": 2, "batch": 8, "emitters": [creep]}
+    direct = {**spec, "control": {"encoding": "direct"}}
+    run = api.post("runs", json={**direct, "search": search}).json()
+    (emitter,) = run["spec"]["search"]["emitters"]
+    assert emitter["plugin"]["settings"] == {"strictness": 3}
+    facts = {"varies": ["numbers"], "learns": "offspring", "gradients": 0}
+    assert emitter["plugin"]["emits"] == facts
+    refusal = api.get(f"runs/{run['id']}/choices").json()["refusal"]
+    assert "got 'mine.creep', which learns from all of its offspring" in refusal
+    (error,) = errors(api.post("runs", json={**spec, "search": search}))
+    assert "got 'mine.creep'" in error["reason"], "it varies no networks"
 
 
 @pytest.mark.parametrize(
@@ -99,7 +107,7 @@ def test_a_missing_plug_in_is_refused_with_field_and_reason(
     answer = api.post("runs", json={**spec, part: value})
     (error,) = errors(answer)
     assert error["field"] == field
-    assert words in error["message"]
+    assert words in error["reason"]
 
 
 @pytest.mark.parametrize(
@@ -147,7 +155,7 @@ def test_settings_never_make_the_server_fetch_a_url(api, offer, mine):
 
 def test_only_a_worker_with_the_plug_in_takes_the_run(api, services, offer, mine, spec):
     offer("with", plugins=declared()), offer("without"), offer("other", plugins=declared(B))
-    first = api.post("runs", json={**mine, "task": {"steps": 40}}).json()
+    first = api.post("runs", json={**mine, "task": {"steps": 400}}).json()
     second = api.post("runs", json=spec).json()["id"]
     with services.sessions.read() as session:
         known = KnownPlugins(services, session)
@@ -178,13 +186,6 @@ def test_a_run_refused_by_its_worker_fails_at_once_with_the_reason(attempt, row)
     attempt.refuse("mine.straight must give one number")
     assert (row().status, row().attempt) == ("failed", 1)
     assert row().error == "mine.straight must give one number"
-
-
-def test_a_run_set_aside_continues_when_resumed(api, run_id, attempt, row):
-    attempt.pause_until_resumed("mine.py is not what it was.")
-    assert row().status == "paused"
-    assert row().warning == "mine.py is not what it was. Then resume the run."
-    assert api.post(f"runs/{run_id}/resume").json()["status"] == "queued"
 
 
 def test_plug_ins_that_no_worker_has_together_are_named(services, offer):

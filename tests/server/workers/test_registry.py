@@ -1,13 +1,12 @@
 """Workers, the queue, and why runs wait, over HTTP."""
 
-from datetime import datetime
 from uuid import UUID
 
 import pytest
 
-from server.attempts.claim import claim
-from server.runs.overview import read_runs
-from server.tables import Run
+from microcosmos_server.attempts.claim import claim
+from microcosmos_server.runs.overview import read_runs
+from microcosmos_server.tables import Run
 
 
 @pytest.fixture
@@ -36,24 +35,6 @@ def test_a_worker_reports_its_device_load_and_run(api, spec, run_id, alive, reco
     assert carried["progress"] == 5 / carried["generations"]
 
 
-def test_since_changes_with_the_workers_status(api, run_id, alive):
-    def read():
-        return api.get("workers").json()[0]
-
-    alive()
-    idle = read()
-    assert (idle["status"], idle["run"], idle["current_run"]) == ("idle", None, None)
-    assert (idle["memory_used_bytes"], idle["load"]) == (None, None)
-    alive(load=1.0)
-    assert read()["since"] == idle["since"]
-    alive(status="busy")
-    second = read()["since"]
-    moment = datetime.fromisoformat  # Texts of whole seconds sort after those with fractions.
-    assert moment(second) > moment(idle["since"])
-    alive(status="busy", run=run_id)
-    assert moment(read()["since"]) > moment(second)
-
-
 def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, reason):
     ids = submit(4)
     api.post(f"runs/{ids[0]}/pause")
@@ -68,18 +49,8 @@ def test_the_queue_lists_waiting_runs_in_order(api, services, spec, submit, reas
     assert first["items"][0]["waiting_reason"] == reason(ids[2])
 
 
-def test_a_run_has_the_time_since_when_it_is_queued(api, run_id, claim_run):
-    first = api.get(f"runs/{run_id}").json()
-    assert first["queued_at"] >= first["created_at"]
-    assert first["queued_at"] == api.get("queue").json()["items"][0]["queued_at"]
-    attempt = claim_run()
-    assert api.get(f"runs/{run_id}").json()["queued_at"] == first["queued_at"]
-    attempt.pause()
-    assert api.post(f"runs/{run_id}/resume").json()["queued_at"] > first["queued_at"]
-
-
 def test_only_runs_that_are_queued_wait(api, run_id, reason, claim_run, report):
-    assert "`make run` or `python -m worker.supervisor`" in reason(run_id)
+    assert "`make run` or `python -m microcosmos_worker.supervisor`" in reason(run_id)
     api.post(f"runs/{run_id}/pause")
     assert reason(run_id) is None
     api.post(f"runs/{run_id}/resume")
@@ -104,27 +75,6 @@ def test_a_queued_run_names_busy_workers_and_its_position(services, submit, aliv
     assert reason(ids[2]) == "Waits for a worker: all 2 are busy; this run is next."
     alive("third")
     assert reason(ids[3]) == "A worker is free; 1 run is before it."
-
-
-def test_runs_that_workers_have_taken_are_not_ahead(api, spec, submit, taken, reason):
-    ids = submit(3)
-    assert [taken(name) for name in ("one", "two")] == ids[:2]
-    assert reason(ids[0]) == "Worker one is about to start it."
-    assert reason(ids[2]) == "Waits for a worker: all 2 are busy; this run is next."
-    ahead = {"runs_ahead": 1, "workers": 2, "idle_workers": 0}
-    assert api.post("runs/estimate", json=spec).json()["queue"] == ahead
-    reasons = {run["id"]: run["waiting_reason"] for run in api.get("queue").json()["items"]}
-    assert reasons == {run: reason(run) for run in ids}
-
-
-def test_a_run_that_no_worker_can_hold_says_how_much_it_needs(api, spec, alive, reason):
-    needed = api.post("runs/estimate", json=spec).json()["memory_bytes"]
-    run = api.post("runs", json=spec).json()["id"]
-    alive(memory=1000)
-    words = f"Needs {needed / 1e6:.3g} MB; the largest live worker has 1 kB."
-    assert reason(run) == words
-    alive("large", memory=needed)
-    assert reason(run) == "A worker is free; this run is next."
 
 
 def test_a_list_asks_the_queue_once_however_many_runs_wait(services, submit, alive, statements):

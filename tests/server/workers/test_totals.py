@@ -4,12 +4,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from server.attempts.leases import end_job, fail_job
-from server.core.database import ago
-from server.deletion.purge import purge
-from server.maintenance.reconcile import reconcile
-from server.tables import Run, Total
-from server.workers import totals
+from microcosmos_server.attempts.leases import end_job, fail_job
+from microcosmos_server.core.database import ago
+from microcosmos_server.deletion.purge import purge
+from microcosmos_server.maintenance.reconcile import reconcile
+from microcosmos_server.tables import Run, Total
+from microcosmos_server.workers import totals
 
 pytestmark = pytest.mark.postgresql
 

@@ -7,7 +7,8 @@ import type * as wire from "./types";
 
 export const EVENTS_URL = `${ROOT}/events`;
 
-export type RunCommand = "pause" | "resume" | "cancel";
+export type RunCommand = "pause" | "resume" | "cancel" | "uncancel";
+type SweepCommand = Exclude<RunCommand, "uncancel">;
 
 /** Give an answer a narrower type than OpenAPI has. */
 const typed = <T>(request: Promise<Answer<unknown>>) => success(request) as Promise<T>;
@@ -63,8 +64,9 @@ export const changeRun = (id: string, change: wire.RunChange) =>
   typed<wire.Run>(client.PATCH("/runs/{run_id}", { ...run(id), body: change as never }));
 export const extendRun = (id: string, generations: number) =>
   typed<wire.Run>(client.POST("/runs/{run_id}/extend", { ...run(id), body: { generations } }));
+/** A command goes on when its page is closed. */
 export const commandRun = (id: string, verb: RunCommand) =>
-  typed<wire.Run>(client.POST(`/runs/{run_id}/${verb}`, run(id)));
+  typed<wire.Run>(client.POST(`/runs/{run_id}/${verb}`, { ...run(id), keepalive: true }));
 /** Move a run to the bin. */
 export const deleteRun = (id: string) => typed<wire.Run>(client.DELETE("/runs/{run_id}", run(id)));
 export const restoreRun = (id: string) => typed<wire.Run>(client.POST("/runs/{run_id}/restore", run(id)));
@@ -158,8 +160,10 @@ export const estimateSweep = (request: wire.SweepRequest) =>
   success(client.POST("/sweeps/estimate", { body: request as never }));
 export const createSweep = (request: wire.SweepRequest, key: string) =>
   typed<wire.Sweep>(client.POST("/sweeps", { params: keyed(key), body: request as never }));
-export const commandSweep = (id: string, verb: RunCommand) =>
-  typed<wire.SweepChanged>(client.POST(`/sweeps/{sweep_id}/${verb}`, sweep(id)));
+export const commandSweep = (id: string, verb: SweepCommand) =>
+  typed<wire.SweepChanged>(client.POST(`/sweeps/{sweep_id}/${verb}`, { ...sweep(id), keepalive: true }));
+export const uncancelSweep = (id: string, runs: string[]) =>
+  typed<wire.SweepChanged>(client.POST("/sweeps/{sweep_id}/uncancel", { ...sweep(id), body: { runs } }));
 export const renameSweep = (id: string, name: string | null) =>
   typed<wire.Sweep>(client.PATCH("/sweeps/{sweep_id}", { ...sweep(id), body: { name } }));
 /** Move the runs of a sweep to the bin, except active ones. */
@@ -177,7 +181,10 @@ export const readNetwork = (sha: string) =>
 
 /** The length, stroke and sperm number of a creature. */
 export const readStroke = (sha: string) =>
-  typed<wire.Stroke>(client.GET("/creatures/{sha}/stroke.json", creature(sha)));
+  typed<wire.Stroke | null>(client.GET("/creatures/{sha}/stroke.json", creature(sha)));
+
+/** Typed quantities in SI units, with the scales of a body in lattice units. */
+export const readUnits = (query: wire.UnitsQuery) => success(client.GET("/units", { params: { query } }));
 
 /** The body plan of a creature, and the body at rest. */
 export const readPlan = (sha: string) =>
@@ -199,23 +206,26 @@ export function importCreature(file: Blob) {
   return success(client.POST("/creatures", { ...body, headers }));
 }
 
-/** The replay; null while the renderer prepares it. */
-export const readReplay = (sha: string) =>
-  whenReady<ArrayBuffer>(client.GET("/creatures/{sha}/replay", { ...creature(sha), parseAs: "arrayBuffer" }));
-/** The inputs of the evaluation of a creature; null while a renderer prepares them. */
-export const readEvaluation = (sha: string) =>
-  whenReady<ArrayBuffer>(
-    client.GET("/creatures/{sha}/evaluation", { ...creature(sha), parseAs: "arrayBuffer" }),
-  );
-/** The pose stream; null while the renderer prepares the replay of a creature without one. */
-export const readPoses = (sha: string, headers = {}) =>
-  whenReady<ArrayBuffer>(
-    client.GET("/creatures/{sha}/poses", { ...creature(sha), headers, parseAs: "arrayBuffer" }),
-  );
+type CreatureFile = "replay" | "motion" | "evaluation" | "poses";
+
+/** Read a file of a creature; null while a renderer prepares it. */
+const readFile =
+  (file: CreatureFile) =>
+  (sha: string, headers: Record<string, string> = {}) =>
+    whenReady<ArrayBuffer>(
+      client.GET(`/creatures/{sha}/${file}`, { ...creature(sha), headers, parseAs: "arrayBuffer" }),
+    );
+export const readReplay = readFile("replay");
+/** The replay made small, for a page without a server. */
+export const readMotion = readFile("motion");
+/** The inputs of the evaluation of a creature. */
+export const readEvaluation = readFile("evaluation");
+/** The pose stream, which may have to be made from a replay. */
+export const readPoses = readFile("poses");
 export const readCover = ({ slug, cover }: wire.Share) => readPoses(cover, { [SHARE_HEADER]: slug });
 /** The verdict of the saved audit, null without one; requests no audit. */
 export const readVerdict = (sha: string) => success(client.GET("/creatures/{sha}/verdict", creature(sha)));
-/** What is computed when it is ordered: null meanwhile, `never` if nobody has ordered it. */
+/** The answer to an order: null while it is computed, `never` if nobody has ordered it. */
 export type OrNever<T> = T | "never" | null;
 export const orderAudit = (sha: string) => success(client.POST("/creatures/{sha}/audit", creature(sha)));
 export const readAudit = (sha: string) =>

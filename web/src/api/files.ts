@@ -49,7 +49,7 @@ function follow(url: string, name: string): void {
 
 export const archiveUrl = (id: string, kind: "h5" | "csv") => `${ROOT}/runs/${id}/archive.${kind}`;
 export const resultsUrl = (id: string) => `${ROOT}/runs/${id}/results.csv`;
-/** With the spec, all that repeats a run with chosen creatures. */
+/** The chosen creatures: with the spec they repeat a run. */
 export const choicesUrl = (id: string) => `${ROOT}/runs/${id}/choices.json`;
 /** The statistics of runs, compared by `measures`. */
 export const statisticsUrl = (kind: "csv" | "tex", of: ComparedRuns, measures: string) =>
@@ -64,3 +64,14 @@ export type NetworkFormat = "svg" | "dot" | "py" | "npz";
 export const networkUrl = (sha: string, kind: NetworkFormat) => `${ROOT}/creatures/${sha}/network.${kind}`;
 export const creatureFileUrl = (sha: string) => `${ROOT}/creatures/${sha}?download=1&ancestors=1`;
 export const creatureH5Url = (sha: string) => `${ROOT}/creatures/${sha}/creature.h5`;
+
+export type ExportFormat = "parquet" | "arrow" | "alife" | "newick" | "netcdf" | "ro-crate";
+
+/** With a real length and period as typed, the file has columns in SI units. */
+export const exportUrl = (
+  id: string,
+  format: ExportFormat,
+  real: { length: string; period: string } | null,
+) =>
+  `${ROOT}/runs/${id}/export/${format}` +
+  (real ? `?${new URLSearchParams({ length: real.length, period: real.period })}` : "");

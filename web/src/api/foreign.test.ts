@@ -3,7 +3,7 @@
 import { describe, expect, it } from "vitest";
 import { nameOf } from "../decode/identity";
 import { foreignFileOf, limited, verified } from "./foreign";
-import { foreignFileUrl, foreignNamesUrl, importPage } from "./shareAddress";
+import { foreignFileUrl, foreignNamesUrl, importPage } from "./address";
 import type { Creature } from "./types";
 
 const SHA = "ab".repeat(32);

@@ -1,5 +1,6 @@
 /** Shared creatures of other installations: their files, verified by hash. */
 
+import { parseJson } from "../decode/json";
 import { nameOf } from "../decode/identity";
 import { Problem, problemOf } from "./problem";
 import { text } from "./text";
@@ -8,17 +9,17 @@ import type { Creature } from "./types";
 export interface ForeignCreature {
   creature: Creature;
   ancestors: Creature[];
-  /** The bytes that came. */
+  /** The received bytes. */
   file: Blob;
 }
 
 /** The largest file that a server imports. */
 const MAX_BYTES = 8 << 20;
-/** For all of it. */
+/** The longest time for the whole file. */
 const PATIENCE_MS = 60_000;
 const NAME = /^[0-9a-f]{64}$/;
 
-/** Read a file without telling its server who asks; throw unless each hash is right. */
+/** Read a file without credentials or referrer; throw unless each hash is right. */
 export async function readForeignCreature(url: string): Promise<ForeignCreature> {
   const { file, body } = await readForeign(url);
   const found = verified(body as Creature);
@@ -83,7 +84,7 @@ async function* chunks({ body }: Response) {
 /** The content of a file; null for text that is not JSON. */
 function parsed(text: string): unknown {
   try {
-    return JSON.parse(text);
+    return parseJson(text);
   } catch {
     return null;
   }

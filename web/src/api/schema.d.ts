@@ -254,6 +254,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/creatures/{sha}/motion": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Small Motion
+         * @description Return the replay made small, for a page without a server, or 202 like `replay`.
+         */
+        get: operations["read_small_motion_api_v1_creatures__sha__motion_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/creatures/{sha}/network.dot": {
         parameters: {
             query?: never;
@@ -563,8 +583,10 @@ export interface paths {
         };
         /**
          * Read Stroke
-         * @description Return the reach of the body in cells, the steps of a stroke, and the effective sperm
-         *     number; 404 for a creature without a stroke.
+         * @description Return the reach of the body in cells, the steps of a stroke, and the sperm number.
+         *
+         *     A creature that was measured has the steps that its own strokes took: a body at its limit of
+         *     speed slows its clock. Null for a creature without a stroke, or too few of them to measure.
          */
         get: operations["read_stroke_api_v1_creatures__sha__stroke_json_get"];
         put?: never;
@@ -716,7 +738,7 @@ export interface paths {
         put?: never;
         /**
          * Create Run
-         * @description Queue a run. The same key with the same spec gives the same run, with 200.
+         * @description Queue a run. The same key with the same request gives the same run, with 200.
          */
         post: operations["create_run_api_v1_runs_post"];
         delete?: never;
@@ -955,14 +977,15 @@ export interface paths {
         put?: never;
         /**
          * Choose Creatures
-         * @description Choose creatures of the run's archive. A part of the next generation that has not begun
-         *     descends from them, and ever less of those that follow (`search.breeding`).
+         * @description Choose creatures of the run's archive for the next generations to descend from.
+         *
+         *     A part of the next generation descends from them, and a smaller part of each later one
+         *     (`search.breeding`).
          */
         post: operations["choose_creatures_api_v1_runs__run_id__choices_post"];
         /**
          * Take Back Choices
-         * @description Take back choices that do not count yet: those of some creatures, or all. The answer says
-         *     which choices there are now.
+         * @description Take back choices that do not count yet, of some creatures or all; return the others.
          */
         delete: operations["take_back_choices_api_v1_runs__run_id__choices_delete"];
         options?: never;
@@ -979,8 +1002,9 @@ export interface paths {
         };
         /**
          * Export Choices
-         * @description Return the choices that count with the files of their creatures: with the spec, all that
-         *     `microcosmos evolve SPEC --choices FILE` needs to repeat the run.
+         * @description Return the choices that count, with the files of their creatures.
+         *
+         *     `microcosmos evolve SPEC --choices FILE` repeats the run with them.
          */
         get: operations["export_choices_api_v1_runs__run_id__choices_json_get"];
         put?: never;
@@ -1000,11 +1024,11 @@ export interface paths {
         };
         /**
          * Export Run
-         * @description Return the last checkpoint of a run as `parquet`, `arrow` or `ro-crate` (a ZIP of
-         *     several files), `netcdf`, `alife` or `newick`.
+         * @description Return the last checkpoint of a run in a format.
          *
-         *     With the real `length` of a body and the `period` of a stroke, tables and `netcdf` have
-         *     columns in SI units too.
+         *     `parquet`, `arrow` and `ro-crate` are a ZIP of several files; `netcdf`, `alife` and `newick`
+         *     are one file. With the real `length` of a body and the `period` of a stroke, tables and
+         *     `netcdf` have columns in SI units too.
          */
         get: operations["export_run_api_v1_runs__run_id__export__form__get"];
         put?: never;
@@ -1127,7 +1151,7 @@ export interface paths {
         };
         /**
          * Read Run Phylogeny
-         * @description Return all creatures that ever entered the archive of a run, and their ancestors in other runs, as columns in bytes.
+         * @description Return all creatures that ever entered the archive of a run, now or as of a generation, and their ancestors in other runs, as columns in bytes.
          */
         get: operations["read_run_phylogeny_api_v1_runs__run_id__phylogeny_get"];
         put?: never;
@@ -1147,7 +1171,7 @@ export interface paths {
         };
         /**
          * Read Run Phylogeny Csv
-         * @description Return all creatures that ever entered the archive of a run, and their ancestors in other runs, as a table in the ALife phylogeny standard.
+         * @description Return all creatures that ever entered the archive of a run, now or as of a generation, and their ancestors in other runs, as a table in the ALife phylogeny standard.
          */
         get: operations["read_run_phylogeny_csv_api_v1_runs__run_id__phylogeny_csv_get"];
         put?: never;
@@ -1167,7 +1191,7 @@ export interface paths {
         };
         /**
          * Read Run Phylogeny Nwk
-         * @description Return all creatures that ever entered the archive of a run, and their ancestors in other runs, as Newick trees by first parents, one for each first ancestor.
+         * @description Return all creatures that ever entered the archive of a run, now or as of a generation, and their ancestors in other runs, as Newick trees by first parents, one for each first ancestor.
          */
         get: operations["read_run_phylogeny_nwk_api_v1_runs__run_id__phylogeny_nwk_get"];
         put?: never;
@@ -1297,6 +1321,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/runs/{run_id}/uncancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Uncancel Run
+         * @description Take a cancellation back. The run continues from its last checkpoint.
+         */
+        post: operations["uncancel_run_api_v1_runs__run_id__uncancel_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/session": {
         parameters: {
             query?: never;
@@ -1377,8 +1421,7 @@ export interface paths {
         };
         /**
          * Read Shared Creature
-         * @description Return the file of a creature, with its ancestors unless told otherwise, for import; of
-         *     an archive the best.
+         * @description Return the file of a creature for import, by default the best, with its ancestors.
          *
          *     Pages of other installations may read it.
          */
@@ -1400,8 +1443,7 @@ export interface paths {
         };
         /**
          * Read Shared Creatures
-         * @description Return the names of a share's creatures, for import: of an archive its elites, the best
-         *     first.
+         * @description Return the names of a share's creatures for import, the best first.
          *
          *     Pages of other installations may read it.
          */
@@ -1710,6 +1752,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sweeps/{sweep_id}/uncancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Uncancel Sweep
+         * @description Take the cancellation of some runs back; `skipped` lists those that are not cancelled.
+         */
+        post: operations["uncancel_sweep_api_v1_sweeps__sweep_id__uncancel_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/tags": {
         parameters: {
             query?: never;
@@ -1839,6 +1901,29 @@ export interface paths {
          * @description Change the quota of a token; omitted limits stay as they are.
          */
         patch: operations["change_token_api_v1_tokens__token_id__patch"];
+        trace?: never;
+    };
+    "/api/v1/units": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Units
+         * @description Read a real length, such as `1 mm`, and the period of a stroke, such as `0.5 s`.
+         *
+         *     With the `cells` of a body, the `steps` of its stroke and the `viscosity` of its fluid in
+         *     cells²/step, return the scales in SI units too.
+         */
+        get: operations["read_units_api_v1_units_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
         trace?: never;
     };
     "/api/v1/workers": {
@@ -2217,6 +2302,31 @@ export interface components {
             /** Width */
             width: number;
         };
+        /**
+         * ElitesEvent
+         * @description Elites entered the archive, a column for each of their values, or left it.
+         */
+        ElitesEvent: {
+            /** Cell */
+            cell: number[];
+            /** Creature */
+            creature: string[];
+            /** Descriptors */
+            descriptors: number[][];
+            /** Elite Generation */
+            elite_generation: number[];
+            /** Emptied */
+            emptied: number[];
+            /** Fitness */
+            fitness: number[];
+            /** Generation */
+            generation: number;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+        };
         /** EstimateRead */
         EstimateRead: {
             /** Cell Steps */
@@ -2235,6 +2345,8 @@ export interface components {
         };
         /** ExperimentRead */
         ExperimentRead: {
+            /** About */
+            about: string;
             /** Experiment */
             experiment: string;
             /** Presets */
@@ -2260,14 +2372,18 @@ export interface components {
             field: string;
             /** Got */
             got?: unknown;
-            /** Message */
-            message: string;
+            /** Least */
+            least?: number | null;
+            /** Most */
+            most?: number | null;
             /** Needed */
             needed?: string | null;
+            /** Reason */
+            reason: string;
         };
         /**
          * Figures
-         * @description What creatures fill of the cells over some axes.
+         * @description Figures of the cells that some creatures fill over some axes.
          */
         Figures: {
             /** Best */
@@ -2345,10 +2461,41 @@ export interface components {
         };
         /**
          * Format
-         * @description What other programs read.
+         * @description The formats of exports.
          * @enum {string}
          */
         Format: "parquet" | "arrow" | "alife" | "newick" | "netcdf" | "ro-crate";
+        /**
+         * GenerationEvent
+         * @description A generation is recorded, with its row of the curves.
+         */
+        GenerationEvent: {
+            /** Best */
+            best: number | null;
+            /** Coverage */
+            coverage: number | null;
+            /** Evaluations */
+            evaluations: number;
+            /** Generation */
+            generation: number;
+            /** Infeasible */
+            infeasible: number;
+            /** Mean */
+            mean: number | null;
+            /** Qd Score */
+            qd_score: number | null;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /** Seconds */
+            seconds: number;
+            /** Summary */
+            summary: {
+                [key: string]: unknown;
+            } | null;
+        };
         /**
          * GpuRead
          * @description The state of a GPU; None where it does not tell.
@@ -2467,6 +2614,8 @@ export interface components {
             at: string;
             /** Attempt */
             attempt: number;
+            /** Details */
+            details: string | null;
             /** Id */
             id: number;
             /**
@@ -2544,6 +2693,8 @@ export interface components {
             /** Figures */
             figures: components["schemas"]["Comparison"][];
             fitness: components["schemas"]["Comparison"];
+            /** Missing */
+            missing: string[];
             /** Recorded Device */
             recorded_device: string;
         };
@@ -2566,8 +2717,13 @@ export interface components {
             width: number;
         };
         /**
+         * Nothing
+         * @description No data.
+         */
+        Nothing: Record<string, never>;
+        /**
          * PairTest
-         * @description Two groups beside each other.
+         * @description A test of two groups.
          */
         PairTest: {
             /** A12 */
@@ -2670,7 +2826,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "fitness" | "descriptor" | "body" | "gait" | "encoding";
+            kind: "fitness" | "descriptor" | "body" | "gait" | "encoding" | "emitter";
             /** Name */
             name: string;
             /** Source */
@@ -2738,6 +2894,17 @@ export interface components {
              * @default about:blank
              */
             type: string;
+        };
+        /**
+         * PurgeEvent
+         * @description A deleted run is gone for good.
+         */
+        PurgeEvent: {
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
         };
         /**
          * Quantiles
@@ -2843,7 +3010,7 @@ export interface components {
              * Database
              * @enum {string}
              */
-            database: "ok" | "unreachable";
+            database: "ok" | "unreachable" | "of another version";
             /**
              * Disk
              * @enum {string}
@@ -2858,7 +3025,7 @@ export interface components {
              * Store
              * @enum {string}
              */
-            store: "ok" | "wrong or unreachable";
+            store: "ok" | "wrong or unreachable" | "cannot be written";
         };
         /** RedisHealth */
         RedisHealth: {
@@ -2949,6 +3116,27 @@ export interface components {
             trusted: (boolean | null)[];
         };
         /**
+         * ResultsEvent
+         * @description Rows of a table are recorded; each names its `creature`, if it has one.
+         */
+        ResultsEvent: {
+            /** Generation */
+            generation: number;
+            /** Rows */
+            rows: {
+                [key: string]: unknown;
+            }[];
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
+            /** Summary */
+            summary: {
+                [key: string]: unknown;
+            } | null;
+        };
+        /**
          * ResultsRead
          * @description The table that is a run's result; each row names its `creature`, if it has one.
          */
@@ -2963,6 +3151,19 @@ export interface components {
             summary: {
                 [key: string]: unknown;
             } | null;
+        };
+        /**
+         * RewindEvent
+         * @description An attempt goes on from a checkpoint: drop everything after its generation.
+         */
+        RewindEvent: {
+            /** Generation */
+            generation: number;
+            /**
+             * Run
+             * Format: uuid
+             */
+            run: string;
         };
         /**
          * RunBrief
@@ -3046,7 +3247,7 @@ export interface components {
         };
         /**
          * RunEvent
-         * @description What the webhook is sent when a run ends, fails or pauses until a person acts.
+         * @description The event that the webhook gets when a run ends, fails or pauses until a person acts.
          */
         RunEvent: {
             data: components["schemas"]["RunNotice"];
@@ -3127,6 +3328,8 @@ export interface components {
             device_patience: number | null;
             /** Error */
             error: string | null;
+            /** Error Details */
+            error_details: string | null;
             /** Eta Seconds */
             eta_seconds: number | null;
             /** Evaluations */
@@ -3212,6 +3415,24 @@ export interface components {
             warning: string | null;
         };
         /**
+         * Scales
+         * @description SI units of a body in its world.
+         */
+        Scales: {
+            /** Cell */
+            cell: number;
+            /** Fluid */
+            fluid: string;
+            /** Node Speed */
+            node_speed: number;
+            /** Speed */
+            speed: number;
+            /** Step */
+            step: number;
+            /** Viscosity */
+            viscosity: number;
+        };
+        /**
          * ShareCreate
          * @description A request for a share; the creature's file supplies the defaults.
          */
@@ -3263,12 +3484,15 @@ export interface components {
             /** Credit */
             credit: string[];
             /** Expires At */
-            expires_at: string | null;
+            expires_at?: string | null;
             /** Generation */
             generation: number | null;
             /** Licence */
             licence: string;
-            /** Listed */
+            /**
+             * Listed
+             * @default false
+             */
             listed: boolean;
             /** Revoked At */
             revoked_at: string | null;
@@ -3350,7 +3574,7 @@ export interface components {
         };
         /**
          * Stroke
-         * @description What makes the numbers of a creature: its length, its stroke and how its body yields.
+         * @description The length and the stroke of a creature, and how its body yields.
          */
         Stroke: {
             /** Length */
@@ -3467,6 +3691,17 @@ export interface components {
             seconds: number | null;
             speed: components["schemas"]["MeasuredSpeed"] | null;
         };
+        /**
+         * SweepEvent
+         * @description A sweep has changed.
+         */
+        SweepEvent: {
+            /**
+             * Sweep
+             * Format: uuid
+             */
+            sweep: string;
+        };
         /** SweepPage */
         SweepPage: {
             /** Items */
@@ -3540,6 +3775,14 @@ export interface components {
              * @enum {string}
              */
             status: "queued" | "running" | "paused" | "finished" | "failed" | "cancelled";
+        };
+        /**
+         * SweepRuns
+         * @description Runs of a sweep, such as those that an action changed.
+         */
+        SweepRuns: {
+            /** Runs */
+            runs: string[];
         };
         /** SweepSummary */
         SweepSummary: {
@@ -3708,6 +3951,19 @@ export interface components {
             used_hours: number;
         };
         /**
+         * Units
+         * @description Quantities in SI units; what is missing or cannot be read is null.
+         */
+        Units: {
+            /** Length */
+            length: number | null;
+            /** Period */
+            period: number | null;
+            scales: components["schemas"]["Scales"] | null;
+            /** Wrong */
+            wrong: string[];
+        };
+        /**
          * UnloadedRead
          * @description A plug-in module that a worker could not load.
          */
@@ -3758,7 +4014,7 @@ export interface components {
             /** Problem */
             problem: string | null;
             /** Problem Kind */
-            problem_kind: ("untested" | "device" | "self-test" | "store") | null;
+            problem_kind: ("untested" | "device" | "self-test" | "store" | "schema") | null;
             /** Run */
             run: string | null;
             /**
@@ -3944,7 +4200,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": unknown;
+                    "application/json": string;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Accepted */
@@ -4055,7 +4312,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/x-hdf5": unknown;
+                    "application/octet-stream": string;
+                    "application/x-hdf5": string;
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -4086,7 +4344,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/vnd.microcosmos.columns": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.microcosmos.columns": string;
                 };
             };
             /** @description Accepted */
@@ -4126,7 +4385,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/gif": unknown;
+                    "application/octet-stream": string;
+                    "image/gif": string;
                 };
             };
             /** @description Accepted */
@@ -4166,7 +4426,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "video/mp4": unknown;
+                    "application/octet-stream": string;
+                    "video/mp4": string;
                 };
             };
             /** @description Accepted */
@@ -4206,7 +4467,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "video/mp4": unknown;
+                    "application/octet-stream": string;
+                    "video/mp4": string;
                 };
             };
             /** @description Accepted */
@@ -4307,6 +4569,46 @@ export interface operations {
             };
         };
     };
+    read_small_motion_api_v1_creatures__sha__motion_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
+                };
+            };
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Rendering"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_network_dot_api_v1_creatures__sha__network_dot_get: {
         parameters: {
             query?: never;
@@ -4324,7 +4626,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/vnd.graphviz": unknown;
+                    "text/vnd.graphviz": string;
                 };
             };
             /** @description Not Found */
@@ -4400,7 +4702,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Not Found */
@@ -4438,7 +4740,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/x-python": unknown;
+                    "text/x-python": string;
                 };
             };
             /** @description Not Found */
@@ -4476,7 +4778,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/svg+xml": unknown;
+                    "application/octet-stream": string;
+                    "image/svg+xml": string;
                 };
             };
             /** @description Not Found */
@@ -4514,7 +4817,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/vnd.microcosmos.columns": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.microcosmos.columns": string;
                 };
             };
             /** @description Unchanged */
@@ -4559,7 +4863,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv": unknown;
+                    "text/csv": string;
                 };
             };
             /** @description Unchanged */
@@ -4604,7 +4908,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
             /** @description Unchanged */
@@ -4687,7 +4991,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Accepted */
@@ -4727,7 +5031,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv": unknown;
+                    "text/csv": string;
                 };
             };
             /** @description Accepted */
@@ -4767,7 +5071,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Accepted */
@@ -4807,7 +5111,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/png": unknown;
+                    "application/octet-stream": string;
+                    "image/png": string;
                 };
             };
             /** @description Accepted */
@@ -4847,7 +5152,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Accepted */
@@ -4887,7 +5192,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/png": unknown;
+                    "application/octet-stream": string;
+                    "image/png": string;
                 };
             };
             /** @description Accepted */
@@ -4927,15 +5233,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Stroke"];
+                    "application/json": components["schemas"]["Stroke"] | null;
                 };
-            };
-            /** @description Not Found */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {
@@ -5065,7 +5364,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/vnd.microcosmos.columns": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.microcosmos.columns": string;
                 };
             };
             /** @description Accepted */
@@ -5433,7 +5733,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv": unknown;
+                    "text/csv": string;
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -5464,7 +5764,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Not Found */
@@ -5577,7 +5877,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description Not Found */
@@ -5822,7 +6122,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/zip": unknown;
+                    "application/octet-stream": string;
+                    "application/zip": string;
                 };
             };
             /** @description Not Modified */
@@ -6031,7 +6332,9 @@ export interface operations {
     };
     read_run_phylogeny_api_v1_runs__run_id__phylogeny_get: {
         parameters: {
-            query?: never;
+            query?: {
+                generation?: number | null;
+            };
             header?: never;
             path: {
                 run_id: string;
@@ -6046,7 +6349,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/vnd.microcosmos.columns": unknown;
+                    "application/octet-stream": string;
+                    "application/vnd.microcosmos.columns": string;
                 };
             };
             /** @description Unchanged */
@@ -6076,7 +6380,9 @@ export interface operations {
     };
     read_run_phylogeny_csv_api_v1_runs__run_id__phylogeny_csv_get: {
         parameters: {
-            query?: never;
+            query?: {
+                generation?: number | null;
+            };
             header?: never;
             path: {
                 run_id: string;
@@ -6091,7 +6397,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv": unknown;
+                    "text/csv": string;
                 };
             };
             /** @description Unchanged */
@@ -6121,7 +6427,9 @@ export interface operations {
     };
     read_run_phylogeny_nwk_api_v1_runs__run_id__phylogeny_nwk_get: {
         parameters: {
-            query?: never;
+            query?: {
+                generation?: number | null;
+            };
             header?: never;
             path: {
                 run_id: string;
@@ -6136,7 +6444,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/plain": unknown;
+                    "text/plain": string;
                 };
             };
             /** @description Unchanged */
@@ -6243,7 +6551,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv": unknown;
+                    "text/csv": string;
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -6339,6 +6647,37 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Target"][];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    uncancel_run_api_v1_runs__run_id__uncancel_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                run_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRead"];
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -6632,7 +6971,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "video/mp4": unknown;
+                    "application/octet-stream": string;
+                    "video/mp4": string;
                 };
             };
             /** @description Accepted */
@@ -6672,7 +7012,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "image/png": unknown;
+                    "application/octet-stream": string;
+                    "image/png": string;
                 };
             };
             /** @description Accepted */
@@ -6768,7 +7109,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/csv": unknown;
+                    "text/csv": string;
                 };
             };
             /** @description Not Found */
@@ -6815,7 +7156,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/x-tex": unknown;
+                    "application/octet-stream": string;
+                    "application/x-tex": string;
                 };
             };
             /** @description Not Found */
@@ -7245,6 +7587,41 @@ export interface operations {
             };
         };
     };
+    uncancel_sweep_api_v1_sweeps__sweep_id__uncancel_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sweep_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SweepRuns"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SweepChanged"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_tags_api_v1_tags_get: {
         parameters: {
             query?: never;
@@ -7322,7 +7699,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": unknown;
+                    "application/octet-stream": string;
                 };
             };
             /** @description A problem (RFC 9457) */
@@ -7480,6 +7857,41 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["TokenRead"];
+                };
+            };
+            /** @description A problem (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_units_api_v1_units_get: {
+        parameters: {
+            query?: {
+                length?: string | null;
+                period?: string | null;
+                cells?: number | null;
+                steps?: number | null;
+                viscosity?: number | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Units"];
                 };
             };
             /** @description A problem (RFC 9457) */

@@ -24,7 +24,7 @@ export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: Swe
 export type Owned = { owner: string | null };
 export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
 export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "skipped">;
-export type SweepCase = { values: CaseValues; runs: string[] };
+type SweepCase = { values: CaseValues; runs: string[] };
 export type SweepSummary = With<Wire["SweepSummary"], { cases: CaseSummary[] }>;
 export type CaseSummary = With<Wire["CaseSummary"], { values: CaseValues }>;
 export type SweepCurves = Wire["SweepCurves"];
@@ -37,7 +37,7 @@ export type Member = Wire["SweepRun"];
 export type Spread = Omit<Wire["Final"], "values">;
 /** Values of a case at the fields of the grid, by path. */
 export type CaseValues = { [path: string]: Json };
-export type Grid = { [path: string]: Json[] };
+type Grid = { [path: string]: Json[] };
 /** Each case of the grid is run with each seed. */
 export interface SweepRequest {
   spec: Spec;
@@ -63,7 +63,6 @@ export type Experiment = With<Wire["ExperimentRead"], { schema: Schema; presets:
 export type Estimate = Wire["EstimateRead"];
 export type Drawing = Wire["DrawingRead"];
 export type DrawnBody = Wire["BodyRead"];
-export type DrawnPicture = Wire["PictureRead"];
 export type Axis = Wire["Axis"];
 export type Archive = Wire["ArchiveRead"];
 export type History = Wire["HistoryRead"];
@@ -91,9 +90,9 @@ export type Values = { [name: string]: Value };
 export type ResultRow = Values & { creature: string | null };
 export type Results = With<Wire["ResultsRead"], { rows: ResultRow[]; summary: Values | null }>;
 
-/** A network of nodes and connections; `cppn-body` grows the body too, and `body-graph` has a plan for it. */
+/** A network of nodes and connections; `body-graph` has a plan for the body. */
 export interface Genes {
-  encoding: "cppn" | "cppn-body" | "body-graph";
+  encoding: "cppn" | "body-graph";
   control: Spec;
   inputs: string[];
   outputs: string[];
@@ -119,14 +118,11 @@ export interface Gait {
   plugin?: Spec;
 }
 
-/** Numeric genes: a control signal, the weights of a network, or a rest shape. */
+/** Numeric genes: a control signal, or a rest shape. */
 export interface Vector {
-  encoding: "direct" | "weights" | "fold";
+  encoding: "direct" | "fold";
   control: Spec;
   values: string;
-  /** Inputs and outputs of the network with these weights. */
-  inputs?: string[];
-  outputs?: string[];
 }
 
 export type Genome = Genes | Vector | Gait;
@@ -134,6 +130,8 @@ export type Genome = Genes | Vector | Gait;
 export type NetworkPositions = Wire["NetworkPositions"];
 export type PlanDrawing = Wire["PlanDrawing"];
 export type Stroke = Wire["Stroke"];
+export type Units = Wire["Units"];
+export type UnitsQuery = NonNullable<operations["read_units_api_v1_units_get"]["parameters"]["query"]>;
 export type PlanSegment = Wire["PlanSegment"];
 export type Relative = Wire["Relative"];
 export type Ancestors = Wire["Ancestors"];
@@ -191,7 +189,9 @@ export interface Creature {
 
 /** The body of an error; a proxy may answer with anything else. */
 export type ProblemDocument = Partial<Wire["Problem"]>;
-export type FieldError = Pick<Wire["FieldError"], "field" | "message">;
+type Error = Wire["FieldError"];
+/** An error of a field; `least` or `most` is the nearest number that it accepts. */
+export type FieldError = Pick<Error, "field" | "reason"> & Partial<Pick<Error, "least" | "most">>;
 
 type GenerationColumns = Omit<Generations, "summary">;
 

@@ -11,10 +11,10 @@ import { useListener } from "../store/polling";
 import { type Toast, dismissToast, undoLatest } from "../store/toasts";
 import { DropTarget, OpenButton } from "../ui/DropTarget";
 import { NotFound, useTitle } from "../ui/Page";
-import { type PageLocation, useLocation } from "../store/router";
-import { usePageKeys } from "./keys";
+import { type PageLocation, useLocation, navigate } from "../store/router";
 import { text } from "./text";
 import "./app.css";
+import { TEXT_FIELDS } from "../ui/forms";
 
 const PAGES: Record<string, FunctionComponent<{ id: string; query: URLSearchParams }>> = {
   runs: lazy(async () => (await import("../runs/RunsPage")).RunsPage),
@@ -162,4 +162,21 @@ function ToastNote({ id, text: message, kind, action }: Toast) {
       )}
     </div>
   );
+}
+
+function usePageKeys(toggleShortcuts: () => void): void {
+  const actions: Record<string, () => void> = {
+    "?": toggleShortcuts,
+    "/": () => document.querySelector<HTMLInputElement>("main input[type=search]")?.focus(),
+    n: () => navigate("/new"),
+  };
+  useListener("keydown", (event: KeyboardEvent) => {
+    const target = event.target as Element;
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (target.closest?.(TEXT_FIELDS) || (target.closest?.("dialog") && event.key !== "?")) return;
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
 }

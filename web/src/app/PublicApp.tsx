@@ -8,7 +8,7 @@ import { NotFound } from "../ui/Page";
 import { lazy } from "../ui/lazy";
 import { text } from "./text";
 
-const SharedTreePage = lazy(async () => (await import("../tree/SharedTreePage")).SharedTreePage);
+const SharedTreePage = lazy(async () => (await import("../tree/TreePage")).SharedTreePage);
 
 export function PublicApp() {
   const { route, query } = useLocation();

@@ -5,12 +5,11 @@ import { pageUrl, sharedSlug } from "../api/address";
 import type { Archive, Run } from "../api/types";
 import type { Elite, Elites } from "../store/elites";
 import { navigate, setQuery } from "../store/router";
-import { containerOf, measureOf, objectiveOf } from "./axes";
+import { containerOf, measureOf, objectiveOf, FITNESS, type Measure } from "./axes";
 import { ArchiveMap } from "./ArchiveMap";
-import { BinElites } from "./BinElites";
 import { MapOptions, kindOf, ReprojectionFigures, Slices } from "./MapOptions";
-import { TimeSlider } from "../replay/TimeSlider";
-import { count } from "../ui/format";
+import { TimeSlider } from "../replay/timeControls";
+import { count, number } from "../ui/format";
 import { Segments } from "../ui/Select";
 import { TrustBadge } from "../ui/TrustBadge";
 import { ForkLink } from "../ui/links";
@@ -20,7 +19,7 @@ import { useTour } from "./tour";
 import { ElitePreview } from "./ElitePreview";
 import { type ArchiveView, useArchiveView } from "./archiveView";
 import type { ArchiveViewProps } from "./binFocus";
-import type { Projection } from "./projection";
+import { type Projection, elitesIn } from "./projection";
 import type { Selection } from "./selection";
 import { Gallery } from "./Gallery";
 import { text } from "./text";
@@ -123,7 +122,7 @@ function useViewProps(
 
 interface HeadProps {
   count: number;
-  /** What the places of the archive are. */
+  /** The kind of the archive's places. */
   kind: string | null;
   gallery: boolean;
   onTour: () => void;
@@ -178,4 +177,36 @@ function useShownGeneration(query: URLSearchParams, last: number) {
   }, [at, requested]);
   // After a rewind, the requested generation may not exist.
   return [at !== null && at >= last ? null : at, setAt] as const;
+}
+
+interface BinElitesProps extends ArchiveViewProps {
+  /** The second objective of fronts; fitness if there is none. */
+  objective: Measure;
+}
+
+/** The elites of the marked bin, to step through a front or another bin of a pool. */
+function BinElites({ lists, projection, marked, onMark, objective }: BinElitesProps) {
+  const bin = marked === null ? undefined : projection.bins.get(marked);
+  if (!lists || bin === undefined) return null;
+  const elites = elitesIn(projection, bin);
+  if (elites.length < 2) return null;
+  return (
+    <section class="bin-elites" aria-label={text.binElites}>
+      <ol>
+        {elites.map(([cell, elite]) => (
+          <li key={cell}>
+            <button class="plain" aria-pressed={cell === marked} onClick={() => onMark(cell)}>
+              {text.fitness} <b>{number(elite.fitness)}</b>
+              {objective.name !== FITNESS && (
+                <>
+                  {" "}
+                  {objective.title} <b>{number(objective.valueOf(elite))}</b>
+                </>
+              )}
+            </button>
+          </li>
+        ))}
+      </ol>
+    </section>
+  );
 }

@@ -1,18 +1,24 @@
 /** The archive as a map of its elites. */
 
 import type { ComponentChildren } from "preact";
-import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Elite, Elites } from "../store/elites";
 import { type ArchiveViewProps, tileUnder, useBinFocus } from "./binFocus";
 import { EliteMeasures } from "./EliteMeasures";
 import { AxisLabels, ColourLegend } from "./labels";
 import type { Layout, Position } from "./layout";
-import { useLasso } from "./lasso";
-import { MapBodies } from "./MapBodies";
-import { useMapCanvas } from "./mapCanvas";
-import { useSize } from "../ui/canvas";
-import { type Region, binsOf, binsWithin, cellsIn, isAdditive, toggle, union } from "./selection";
+import { useMapCanvas, FADED } from "./mapCanvas";
+import { type Size, useSize, prepare, px, useOnScreen, useTheme } from "../ui/canvas";
+import { type Region, binsOf, binsWithin, cellsIn, isAdditive, toggle, union, regionOf } from "./selection";
 import { text } from "./text";
+import { useListener } from "../store/polling";
+import { useSteps } from "../replay/clock";
+import { BODY_INK } from "../replay/motion";
+import { traceBody } from "../replay/poses";
+import { readArchiveBatch, usePoses } from "../store/poses";
+import { luminance, sequential } from "../ui/colours";
+import { type Colouring, colourPosition } from "./colouring";
+import type { Projection, Tile } from "./projection";
 
 interface Props extends ArchiveViewProps {
   elites: Elites;
@@ -124,4 +130,134 @@ function PlacedBeside({ position: [x, y], children }: { position: Position; chil
       {children}
     </div>
   );
+}
+
+/** The shortest drag, in pixels; shorter movements are clicks. */
+const MIN_DISTANCE = 5;
+
+/** `onEnd` gets the region when the button is released. */
+function useLasso(enabled: boolean, onEnd: (region: Region, event: PointerEvent) => void) {
+  const started = useRef<{ event: PointerEvent; way: Position[] } | null>(null);
+  const [region, setRegion] = useState<Region | null>(null);
+  const dragged = useRef(false);
+  const stop = () => {
+    started.current = null;
+    setRegion(null);
+  };
+  useListener("keydown", (event: KeyboardEvent) => {
+    if (region && event.key === "Escape") stop();
+  });
+  return {
+    region,
+    /** True if a click is the end of a drag. */
+    wasDrag: () => dragged.current,
+    /** True while a region is drawn. */
+    onMove: (event: PointerEvent): boolean => {
+      if (started.current && (event.buttons & 1) === 0) stop(); // Released outside.
+      if (!started.current) return false;
+      const { event: first, way } = started.current;
+      const far = Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY);
+      if (!dragged.current && far < MIN_DISTANCE) return false;
+      if (!dragged.current) (event.currentTarget as Element).setPointerCapture(event.pointerId);
+      dragged.current = true;
+      way.push(positionOf(event));
+      setRegion(regionOf(way));
+      return true;
+    },
+    handlers: {
+      onPointerDown: (event: PointerEvent) => {
+        dragged.current = false;
+        if (!enabled || event.button !== 0 || event.pointerType === "touch") return;
+        started.current = { event, way: [positionOf(event)] };
+      },
+      onPointerUp: (event: PointerEvent) => {
+        if (started.current && dragged.current) {
+          onEnd(regionOf([...started.current.way, positionOf(event)]), event);
+        }
+        stop();
+      },
+      onPointerCancel: stop,
+    },
+  };
+}
+
+/** The position on the element, clipped to [0, 1). */
+function positionOf(event: PointerEvent): Position {
+  const { left, top, width, height } = (event.currentTarget as Element).getBoundingClientRect();
+  const bounded = (share: number) => Math.min(1 - 1e-9, Math.max(0, share));
+  return [bounded((event.clientX - left) / width), bounded((event.clientY - top) / height)];
+}
+
+/** The smallest cells in which a body can be recognised, in pixels, and the most bodies at a time. */
+const [MIN_SIDE, MOST] = [15, 600];
+/** Brighter cells have dark bodies: where black and white have the same contrast (WCAG 2.2). */
+const BRIGHT = 0.18;
+
+interface MapBodiesProps {
+  /** The run of the cells; null if they are no cells of a run. */
+  run: string | null;
+  /** The generation shown; null for the newest. */
+  at: number | null;
+  projection: Projection;
+  colouring: Colouring;
+  /** The selected bins; null without a selection. */
+  selected: ReadonlySet<number> | null;
+  size: Size;
+}
+
+function MapBodies({ run, projection, size, ...props }: MapBodiesProps) {
+  const side = Math.sqrt((size.width * size.height) / projection.layout.count);
+  if (run === null || side < MIN_SIDE || projection.tiles.size > MOST) return null;
+  return <Bodies {...props} {...{ run, projection, size, side }} />;
+}
+
+function Bodies({
+  run,
+  at,
+  projection,
+  colouring,
+  selected,
+  size,
+  side,
+}: MapBodiesProps & { run: string; side: number }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const theme = useTheme();
+  const { tiles, layout } = projection;
+  const elites = useMemo(
+    () => [...tiles.values()].map(({ cell, elite: { creature } }) => ({ cell, creature })),
+    [tiles],
+  );
+  const poses = usePoses(readArchiveBatch(run, at), elites, false);
+  const inks = useMemo(
+    () => new Map([...tiles].map(([bin, tile]) => [bin, inkOn(tile, colouring)])),
+    [tiles, colouring],
+  );
+  const last = useRef({ steps: 0, frame: 0 });
+  useSteps(useOnScreen(canvas), (steps) => {
+    const { current } = last;
+    // Every other frame is enough for small bodies that move; other changes are drawn at once.
+    const moves = steps !== current.steps;
+    current.steps = steps;
+    if (!canvas.current || (moves && ++current.frame % 2 > 0)) return;
+    const context = prepare(canvas.current, size);
+    context.lineJoin = context.lineCap = "round";
+    context.lineWidth = Math.max(1.2, side / 22);
+    for (const [bin, { elite }] of tiles) {
+      const stream = poses.get(elite.creature);
+      if (!stream) continue;
+      const [x, y] = layout.centre(bin);
+      traceBody(context, stream, steps, [x * size.width - side / 2, y * size.height - side / 2, side]);
+      context.strokeStyle = inks.get(bin) ?? BODY_INK[theme];
+      context.globalAlpha = !selected || selected.has(bin) ? 1 : FADED;
+      context.stroke();
+    }
+  });
+  return <canvas data-bodies ref={canvas} style={px({ ...size })} />;
+}
+
+/** The colour of a body that is legible on its cell; null if the cell has no colour. */
+function inkOn(tile: Tile, colouring: Colouring): string | null {
+  const position = colourPosition(colouring, tile);
+  if (position === null) return null;
+  return luminance(sequential(position, colouring.palette)) > BRIGHT ? BODY_INK.light : BODY_INK.dark;
 }

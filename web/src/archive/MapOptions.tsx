@@ -4,30 +4,23 @@ import type { Archive, Reprojection, Run } from "../api/types";
 import { valueAt } from "../charts/plot/scale";
 import { setQuery } from "../store/router";
 import { PALETTES } from "../ui/colours";
-import { Dropdown } from "../ui/Dropdown";
+import { Dropdown, Segments, Select } from "../ui/Select";
 import { count, number, percent, words } from "../ui/format";
-import { Segments, Select } from "../ui/Select";
-import { type ArchiveView, setSlice } from "./archiveView";
+import { type ArchiveView, TRUST_CHOICES, setSlice } from "./archiveView";
 import { type MapAxis, containerOf, scaleOf } from "./axes";
 import { coloursOf } from "./colouring";
 import type { Slice } from "./projection";
 import { setOf, setReprojectedAxes } from "./reprojection";
-import { TRUST_CHOICES } from "./trust";
 import { containerText, text } from "./text";
 
 const PALETTE_CHOICES = PALETTES.map((name) => [name, words(name)] as const);
-
-interface Props {
-  archive: Archive;
-  view: ArchiveView;
-}
 
 const CREATURES = [
   ["elites", text.presentElites],
   ["history", text.allEntered],
 ] as const;
 
-export function MapOptions({ archive, view }: Props) {
+export function MapOptions({ archive, view }: { archive: Archive; view: ArchiveView }) {
   const { axes, choices, colour } = view;
   const [x, y] = [axes[0].name, axes[1].name];
   const choose = (axis: "x" | "y") => (name: string) => {
@@ -54,7 +47,7 @@ export function MapOptions({ archive, view }: Props) {
   );
 }
 
-/** What is rarely changed, in a panel over the map; a dot says that something has been. */
+/** Rarely changed options, in a panel over the map; a dot says that one is changed. */
 function MoreOptions({ of, palette, trust }: ArchiveView) {
   const changed = of === "history" || trust !== "" || palette !== PALETTES[0];
   return (
@@ -81,7 +74,7 @@ function MoreOptions({ of, palette, trust }: ArchiveView) {
 /** Loadings of a component that are shown. */
 const STRONGEST = 5;
 
-/** What the creatures fill over the axes of the map, beside the present elites alone. */
+/** The coverage of all creatures over the axes of the map, beside that of the present elites. */
 export function ReprojectionFigures({
   archive,
   reprojection,

@@ -1,8 +1,8 @@
 /** An archive with three axes, for tests of the map. */
 
 import type { Archive } from "../api/types";
-import type { Elite, Elites } from "../store/elites";
-import { type Measures, axisOf } from "./axes";
+import type { Elite, Elites, Measures } from "../store/elites";
+import { axisOf } from "./axes";
 import { project } from "./projection";
 
 export const AXES = [

@@ -1,8 +1,8 @@
-/** The view of an archive, from the address and the store. */
+/** The view of an archive, from the address and the store, with the elites of one verdict if asked for. */
 
 import { useEffect, useMemo, useState } from "preact/hooks";
 import type { Archive, Run } from "../api/types";
-import { type Elites, elitesByGeneration } from "../store/elites";
+import { type Elites, type Elite, elitesByGeneration } from "../store/elites";
 import { useCentroids, useMeasures, useHistory } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { type MapAxis, FITNESS, axisOf, choicesOf, missingOf, namesOf, objectiveOf } from "./axes";
@@ -10,8 +10,9 @@ import { AGE, colourMeasure, colouringOf, coloursOf } from "./colouring";
 import { type Layout, voronoiLayout } from "./layout";
 import { type Slice, project } from "./projection";
 import { ofQuery, useReprojected, withComponents } from "./reprojection";
-import { trustOf, withVerdict } from "./trust";
 import { PALETTES } from "../ui/colours";
+import { text as words } from "../ui/text";
+import { text } from "./text";
 
 export type ArchiveView = ReturnType<typeof useArchiveView>;
 
@@ -110,4 +111,26 @@ function useVoronoi(id: string, archive: Archive, names: [string, string]): Layo
     };
   }, [shown, centroids, x, y]);
   return layout;
+}
+
+const VERDICTS: Record<string, Elite["trusted"]> = { trusted: true, distrusted: false, unaudited: null };
+
+export const TRUST_CHOICES = [
+  ["", text.anyVerdict],
+  ["trusted", words.trusted],
+  ["distrusted", words.notTrusted],
+  ["unaudited", words.notAudited],
+] as const;
+
+/** The choice in the address; unknown ones are ignored. */
+export function trustOf(query: URLSearchParams): string {
+  const given = query.get("trust") ?? "";
+  return Object.hasOwn(VERDICTS, given) ? given : "";
+}
+
+/** The elites with a verdict; all of them without a choice. */
+export function withVerdict(elites: Elites, choice: string): Elites {
+  const verdict = VERDICTS[choice];
+  if (verdict === undefined) return elites;
+  return new Map([...elites].filter(([, { trusted }]) => trusted === verdict));
 }

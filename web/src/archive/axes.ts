@@ -1,13 +1,10 @@
 /** Axes of a map: descriptors of the archive, recorded measures and fitness. */
 
 import type { Archive, Axis, Run } from "../api/types";
-import type { Elite, Elites } from "../store/elites";
+import type { Elite, Elites, Measures } from "../store/elites";
 import { words } from "../ui/format";
 import { type Scale, roundStep } from "../charts/plot/scale";
 import { text } from "./text";
-
-/** Recorded measures by name and creature. */
-export type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
 
 export const FITNESS = "fitness";
 /** Bins of an axis that is not an axis of the grid. */
@@ -28,7 +25,7 @@ export function namesOf(archive: Archive, x: string | null, y: string | null): [
   return [first, y && known.has(y) ? y : (defaults.slice(0, 2).find((name) => name !== first) ?? FITNESS)];
 }
 
-/** What an archive keeps instead of one elite in each cell; null for cells. */
+/** The container of an archive that does not keep one elite in each cell; null for cells. */
 export const containerOf = ({ spec }: Run) =>
   (spec.archive as { container?: Container | null } | undefined)?.container ?? null;
 

@@ -3,7 +3,8 @@
 import type { Archive } from "../api/types";
 import { type Scale, positionOf } from "../charts/plot/scale";
 import { type Palette, sequential, lut } from "../ui/colours";
-import { FITNESS, type Measures, type Measure, choicesOf, measureOf } from "./axes";
+import type { Measures } from "../store/elites";
+import { FITNESS, type Measure, choicesOf, measureOf } from "./axes";
 import type { Tile, Tiles } from "./projection";
 import { text } from "./text";
 

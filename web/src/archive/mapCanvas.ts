@@ -1,4 +1,4 @@
-/** The canvas of a map: the cells of an archive, and flashes of changed cells above them. */
+/** The canvas of a map: the cells of an archive, marks of distrusted elites, and flashes of changed cells. */
 
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import type { Elites } from "../store/elites";
@@ -6,7 +6,6 @@ import { type Size, type Theme, prepare, prefersReducedMotion, useTheme } from "
 import { type Rgb, pixel } from "../ui/colours";
 import { type Colouring, binColours } from "./colouring";
 import { type Layout, rasterOf } from "./layout";
-import { markDistrusted } from "./distrust";
 import type { Tiles } from "./projection";
 
 const FLASH_MS = 1200;
@@ -162,4 +161,29 @@ function drawFlashes(
     context.stroke();
   }
   context.globalAlpha = 1;
+}
+
+const CROSS_INKS = { light: ["#ffffff", "#12222c"], dark: ["#111b21", "#fdf8ec"] } as const;
+
+/** Draw a small cross on a light or dark ground, with a border; lengths in pixels. */
+export function markDistrusted(
+  context: CanvasRenderingContext2D,
+  [x, y]: readonly [number, number],
+  radius: number,
+  ground: Theme,
+): void {
+  const [border, ink] = CROSS_INKS[ground];
+  context.beginPath();
+  for (const slope of [1, -1]) {
+    context.moveTo(x - radius, y - slope * radius);
+    context.lineTo(x + radius, y + slope * radius);
+  }
+  for (const [style, width] of [
+    [border, 3.5],
+    [ink, 1.5],
+  ] as const) {
+    context.strokeStyle = style;
+    context.lineWidth = width;
+    context.stroke();
+  }
 }

@@ -2,11 +2,10 @@
 
 import { useMemo } from "preact/hooks";
 import type { Archive, Reprojection, Run } from "../api/types";
-import { type Elites, elitesByGeneration } from "../store/elites";
+import { type Elites, type Measures, elitesByGeneration } from "../store/elites";
 import { useReprojection } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { percent } from "../ui/format";
-import type { Measures } from "./axes";
 import { missingOf } from "./axes";
 import { AGE } from "./colouring";
 import { text } from "./text";

@@ -9,7 +9,7 @@ const CONTAINERS: Record<string, string> = {
   learned: "learned axes",
 };
 
-/** What a container keeps, by the spec's word. */
+/** The title of a container, by its name in the spec. */
 export const containerText = (kind: string) => CONTAINERS[kind] ?? kind;
 
 export const text = {

@@ -1,18 +1,13 @@
-/** When the tour of an archive is open. */
+/** The state of the tour of an archive: open or closed. */
 
 import { useState } from "preact/hooks";
 import type { Run } from "../api/types";
+import { keep, readKept } from "../store/kept";
 
 const STORAGE_KEY = "microcosmos:tour-taken";
 
 /** True if this browser has shown the tour; false if it forbids storage. */
-export function hasTakenTour(): boolean {
-  try {
-    return localStorage.getItem(STORAGE_KEY) !== null;
-  } catch {
-    return false;
-  }
-}
+export const hasTakenTour = () => readKept(STORAGE_KEY, 0) > 0;
 
 /** The tour opens by itself over the demonstration only. */
 export const opensByItself = (run: Pick<Run, "demonstration">) => run.demonstration && !hasTakenTour();
@@ -27,11 +22,7 @@ export function useTour(run: Run) {
   };
   const end = () => {
     setOpen(false);
-    try {
-      localStorage.setItem(STORAGE_KEY, "1");
-    } catch {
-      // The tour is offered again.
-    }
+    keep(STORAGE_KEY, 1);
   };
   return { open, requested, begin, end };
 }

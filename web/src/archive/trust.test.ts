@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { elite } from "./archive.fixture";
-import { trustOf, withVerdict } from "./trust";
+import { trustOf, withVerdict } from "./archiveView";
 
 const elites = new Map([true, false, null].map((trusted, cell) => [cell, { ...elite(1), trusted }]));
 

@@ -4,7 +4,7 @@ import "./lineStyle.css";
 
 /** More lines cannot be distinguished. */
 export const MAX_LINES = 8;
-/** Of more runs than lines, those that differ in the seed alone share a line style. */
+/** The most runs: beyond `MAX_LINES`, runs that differ in the seed alone share a line style. */
 export const MAX_RUNS = 40;
 
 const SOLID_LINES = 4;

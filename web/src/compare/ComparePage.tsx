@@ -16,9 +16,8 @@ import { setQuery } from "../store/router";
 import { useRuns } from "../store/store";
 import { lazy } from "../ui/lazy";
 import { Card, Empty, Page } from "../ui/Page";
-import { Table } from "../ui/Table";
-import { Term } from "../ui/Term";
 import { shortId, titleOf, DASH, count, duration, number } from "../ui/format";
+import { ComparisonTable, type Row } from "./ComparisonTable";
 import { CreaturesPage } from "./CreaturesPage";
 import { text } from "./text";
 
@@ -191,33 +190,11 @@ function Specs({ runs }: { runs: Compared[] }) {
   );
 }
 
-interface RunTableProps {
-  runs: Compared[];
-  corner: string;
-  rows: { title: string; values: string[] }[];
-  /** True if the titles are paths of the spec. */
-  code?: boolean;
-}
-
-function RunTable({ runs, corner, rows, code = false }: RunTableProps) {
-  const columns = runs.map(({ name, lineIndex }, i) => ({
-    title: (
-      <>
-        <LineSample index={lineIndex} /> {name}
-      </>
-    ),
-    cell: ({ values }: (typeof rows)[0]) => values[i]!,
-  }));
-  const first = {
-    title: corner,
-    cell: ({ title }: (typeof rows)[0]) => (code ? <code>{title}</code> : <Term name={title} />),
-  };
-  return (
-    <Table
-      label={text.tableOf(corner)}
-      columns={[first, ...columns]}
-      rows={rows}
-      keyOf={({ title }) => title}
-    />
-  );
+function RunTable({ runs, ...rest }: { runs: Compared[]; corner: string; rows: Row[]; code?: boolean }) {
+  const columns = runs.map(({ name, lineIndex }) => (
+    <>
+      <LineSample index={lineIndex} /> {name}
+    </>
+  ));
+  return <ComparisonTable label={text.tableOf(rest.corner)} columns={columns} {...rest} />;
 }

@@ -9,12 +9,10 @@ import { useFetched } from "../store/fetch";
 import { readTankBatch, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
 import { Card, Page } from "../ui/Page";
-import { Table } from "../ui/Table";
-import { Term } from "../ui/Term";
 import { DASH, shortId } from "../ui/format";
 import { MAX_SIDE_BY_SIDE } from "../ui/links";
+import { ComparisonTable, type Row } from "./ComparisonTable";
 import { Race } from "./Race";
-import { commonGenes } from "./commonGenes";
 import { text } from "./text";
 import "./creatures.css";
 
@@ -75,21 +73,12 @@ function Chosen({ names }: { names: string[] }) {
   );
 }
 
-interface Row {
-  title: string;
-  values: string[];
-}
-
 /** Measures, body, network and origin of each creature: by default what differs. */
 function Facts({ creatures }: { creatures: Creature[] }) {
   const [all, setAll] = useState(false);
   const rows = rowsOf(creatures);
   const shown = all ? rows : rows.filter(({ values }) => new Set(values).size > 1);
-  const columns = creatures.map(({ sha256 }, i) => ({
-    title: <code>{shortId(sha256)}</code>,
-    cell: ({ values }: Row) => values[i]!,
-  }));
-  const first = { title: text.fact, cell: ({ title }: Row) => <Term name={title} /> };
+  const columns = creatures.map(({ sha256 }) => <code>{shortId(sha256)}</code>);
   return (
     <Card
       id="facts"
@@ -100,11 +89,9 @@ function Facts({ creatures }: { creatures: Creature[] }) {
         )
       }
     >
-      <Table
-        label={text.facts}
-        columns={[first, ...columns]}
+      <ComparisonTable
+        {...{ label: text.facts, corner: text.fact, columns }}
         rows={creatures.length > 1 ? shown : rows}
-        keyOf={({ title }) => title}
       />
     </Card>
   );
@@ -118,4 +105,22 @@ export function rowsOf(creatures: Creature[]): Row[] {
   const rows = titles.map((title) => ({ title, values: facts.map((each) => each.get(title) ?? DASH) }));
   const common = commonGenes(creatures);
   return common ? [...rows, { title: text.commonGenes, values: common }] : rows;
+}
+
+/**
+ * For each creature, how many of its connections the first one has too: those with equal innovation
+ * numbers, which come from one ancestor. Null if the first one has no such genes.
+ */
+export function commonGenes([first, ...others]: Creature[]): string[] | null {
+  const own = first && innovationsOf(first);
+  if (!own || others.length === 0) return null;
+  const known = new Set(own);
+  return [first, ...others].map((creature) => {
+    const genes = innovationsOf(creature);
+    return genes ? text.of(genes.filter((gene) => known.has(gene)).length, genes.length) : DASH;
+  });
+}
+
+function innovationsOf({ identity: { genome } }: Creature): number[] | null {
+  return "connections" in genome ? genome.connections.innovation : null;
 }

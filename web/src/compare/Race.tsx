@@ -2,16 +2,17 @@
 
 import type { RefObject } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { saveFile } from "../api/files";
 import { STEPS_PER_SECOND, useClock, useKeys } from "../replay/clock";
 import { showFailure } from "../store/toasts";
 import { type Size, prefersReducedMotion, px, useSize } from "../ui/canvas";
 import { useLeaving } from "../ui/forms";
+import { Select } from "../ui/Select";
 import { type Lane, drawRace, isOver } from "./race";
-import { gifOf } from "./gif";
-import { canFilm, film, save, savePicture } from "./recording";
+import { gifOf, canFilm, film, savePicture } from "./recording";
 import { text } from "./text";
 
-const PACES = [1, 2, 4];
+const PACES = ["1", "2", "4"].map((pace) => [pace, `${pace} ×`] as const);
 const LANE_HEIGHT = 120;
 
 export function Race({ lanes }: { lanes: Lane[] }) {
@@ -46,16 +47,12 @@ export function Race({ lanes }: { lanes: Lane[] }) {
       <div class="row race-controls">
         <button onClick={toggle}>{playing ? text.pause : text.play}</button>
         <button onClick={restart}>{text.restart}</button>
-        <label class="compact">
-          {text.pace}
-          <select value={pace} onChange={(event) => setPace(Number(event.currentTarget.value))}>
-            {PACES.map((each) => (
-              <option key={each} value={each}>
-                {each} ×
-              </option>
-            ))}
-          </select>
-        </label>
+        <Select
+          title={text.pace}
+          choices={PACES}
+          value={String(pace)}
+          onChange={(chosen) => setPace(Number(chosen))}
+        />
         <span class="spring" />
         <Exports {...{ canvas, lanes, size, pace }} onStart={restart} isOver={over} />
       </div>
@@ -88,7 +85,7 @@ function Exports({ canvas, lanes, size, pace, onStart, isOver }: ExportsProps) {
   const makeGif = async () => {
     setDrawn(0);
     await gifOf(lanes, size, pace * STEPS_PER_SECOND, setDrawn)
-      .then((blob) => leaving.aborted || save(blob, `${text.fileName}.gif`))
+      .then((blob) => leaving.aborted || saveFile(blob, `${text.fileName}.gif`))
       .catch(showFailure);
     setDrawn(null);
   };

@@ -1,4 +1,4 @@
-/** What is used of gifenc, which brings no types. */
+/** Types of gifenc, which has none of its own. */
 
 declare module "gifenc" {
   type Palette = number[][];

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Creature } from "../api/types";
 import { decodePoses } from "../decode/poses";
 import { header, poseBytes } from "../decode/poses.fixture";
-import { commonGenes } from "./commonGenes";
+import { commonGenes } from "./CreaturesPage";
 import { isOver, lengthsAfter, placeAfter, scaleOf } from "./race";
 
 /** Two frames, ten steps apart; the middle of the body moves from the first to the second. */

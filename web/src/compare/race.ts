@@ -16,7 +16,7 @@ export interface Lane {
 const MARGIN = 70;
 const TRAIL_POINTS = 60;
 const TRAIL_STEPS = 12;
-/** Strokes by which the direction of a creature is told. */
+/** Loops that decide the direction of a creature. */
 const LOOPS = 2;
 
 /** The way from the start after some steps, in cells, y upwards; the creature swims to the right. */

@@ -3,7 +3,7 @@
 export const text = {
   runs: "Runs",
   compare: "Compare",
-  bySpec: "The line tells the spec: runs that differ in the seed alone share it.",
+  bySpec: "Each line style is one spec: runs that differ only in the seed share it.",
   tooMany: (limit: number, requested: number) =>
     `At most ${limit} runs can be compared. The first ${limit} of ${requested} are shown.`,
   nothingSelected: "No runs selected",
@@ -37,7 +37,7 @@ export const text = {
       ? "A creature that swims to the right"
       : `${count} creatures that swim to the right, in lanes`,
   raceAbout:
-    "All start at one moment on one line, at one scale. Each repeats its last two recorded strokes; what comes after them is not simulated. The lines are a body length apart, that of the longest.",
+    "All start together on one line, at the same scale. Each repeats its last two recorded strokes; later motion is not simulated. The grid lines are one length of the longest body apart.",
   play: "Play",
   pause: "Pause",
   restart: "From the start",
@@ -50,7 +50,7 @@ export const text = {
   fileName: "creatures",
   fact: "Fact",
   facts: "Facts of the creatures",
-  factDifferences: "What differs",
+  factDifferences: "Differences",
   allFacts: "Show all",
   onlyDifferences: "Show differences",
   commonGenes: "Connections shared with the first",

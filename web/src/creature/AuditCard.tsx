@@ -6,8 +6,7 @@ import { useRefusal } from "../store/principal";
 import { number } from "../ui/format";
 import { type Column, Table } from "../ui/Table";
 import { TrustBadge } from "../ui/TrustBadge";
-import { CheckCard } from "./CheckCard";
-import { type Check, useCheck } from "./check";
+import { type Check, useCheck, CheckCard } from "./CheckCard";
 import { Mark } from "./Mark";
 import { text } from "./text";
 

@@ -2,7 +2,7 @@
 
 import { useEffect, useMemo } from "preact/hooks";
 import * as api from "../api/client";
-import type { Creature, Spec } from "../api/types";
+import type { Creature, Spec, Json } from "../api/types";
 import type { Replay } from "../decode/replay";
 import { useFetched } from "../store/fetch";
 import { usePoseStream } from "../store/poses";
@@ -11,11 +11,11 @@ import { NotForceFree, isForceFree } from "../ui/coupling";
 import { Page, reasonOf, useTitle } from "../ui/Page";
 import { TrustBadge } from "../ui/TrustBadge";
 import { ReplayPlayer } from "../replay/ReplayPlayer";
-import { newPlayhead } from "../replay/playhead";
+import { newPlayhead } from "../replay/clock";
 import { AUDIT_HASH, AuditCard, type AuditState, useAudit } from "./AuditCard";
 import { FactsCard } from "./FactsCard";
 import { FamilyCard } from "./FamilyCard";
-import { BreedCreature } from "../breeding/BreedCreature";
+import { BreedCreature } from "../breeding/BreedButton";
 import { ForkLink } from "../ui/links";
 import { GenomeCard } from "./GenomeCard";
 import { LiveCard } from "./LiveCard";
@@ -24,9 +24,8 @@ import { LatestCreatures, NamedCreature } from "../replay/OtherCreatures";
 import { Downloads } from "./Downloads";
 import { PlanCard } from "./PlanCard";
 import { RemeasureCard } from "./RemeasureCard";
-import { SavePage } from "./SavePage";
+import { SavePage } from "./Downloads";
 import { PublishButton } from "../publish/PublishButton";
-import { RefineButton } from "./RefineButton";
 import { SwimmingBody } from "../replay/SwimmingBody";
 import { ReplayStatus, useReplays } from "../replay/replays";
 import { SpaceTimeCard } from "./SpaceTimeCard";
@@ -35,13 +34,14 @@ import { isEvolved, swims } from "./kinds";
 import { text } from "./text";
 import "./creature.css";
 import "./details.css";
+import { useRefusal } from "../store/principal";
+import { applyResponse } from "../store/store";
+import { showFailure } from "../store/toasts";
+import { navigate } from "../store/router";
+import { ConfirmButton } from "../ui/ConfirmButton";
+import { newIdempotencyKey } from "../ui/forms";
 
-interface Props {
-  id: string;
-  query: URLSearchParams;
-}
-
-export function CreaturePage({ id: sha, query }: Props) {
+export function CreaturePage({ id: sha, query }: { id: string; query: URLSearchParams }) {
   const { value: creature, error } = useFetched(() => api.readCreature(sha), [sha]);
   useTitle(text.title(shortId(sha)));
   const audit = useAudit(sha);
@@ -143,7 +143,7 @@ const othersOf = (sha: string): Others => ({
   ),
 });
 
-/** What it reached and where it comes from, in one line. */
+/** The fitness and the birth of a creature, in one line. */
 function KeyFacts({ creature: { measured, provenance, identity } }: { creature: Creature }) {
   const facts = [
     ...(measured ? [text.reached(number(measured.fitness, 3), identity.task.fitness)] : []),
@@ -162,5 +162,34 @@ function ReplayFitness({ replay, task }: { replay: Replay; task: Spec }) {
       {recorded !== null && text.recordedFitness(number(recorded, 4))}
       {difference !== null && difference !== 0 && text.rounding(number(difference, 2))}.
     </p>
+  );
+}
+
+interface RefineProps {
+  creature: Creature;
+  /** The run whose cells bound the refinement, if the page was opened from one. */
+  run: string | null;
+}
+
+/** The button that starts a refinement run from a creature. */
+function RefineButton({ creature, run }: RefineProps) {
+  const refusal = useRefusal();
+  if (refusal) return null;
+  const start = async () => {
+    try {
+      const archive = run ? (await api.readRun(run)).spec.archive : undefined;
+      const spec = {
+        experiment: "refinement",
+        creature: creature as unknown as Json,
+        ...(archive !== undefined && { archive }),
+      };
+      const made = await applyResponse("change", api.createRun(spec, newIdempotencyKey(), null));
+      navigate(`/runs/${made.id}`);
+    } catch (error) {
+      showFailure(error);
+    }
+  };
+  return (
+    <ConfirmButton verb={text.refine} what={text.refineWhat} queues={text.refineAbout} onConfirm={start} />
   );
 }

@@ -10,6 +10,7 @@ import {
   creatureH5Url,
   pictureUrl,
   posesUrl,
+  saveFile,
 } from "../api/files";
 import { sharedSlug } from "../api/address";
 import { poll } from "../store/polling";
@@ -17,6 +18,9 @@ import { showFailure, showToast } from "../store/toasts";
 import { copyText } from "../ui/clipboard";
 import { FileLink } from "../ui/links";
 import { text } from "./text";
+import type { AboutCreature } from "../offline/page";
+import { useLeaving } from "../ui/forms";
+import { bytes, shortId } from "../ui/format";
 
 const KINDS: [PictureFormat, string][] = [
   ["strip.png", "PNG"],
@@ -68,3 +72,28 @@ function Download({ url, title }: { url: string; title: string }) {
     </button>
   );
 }
+
+/** The button that saves a creature as a page that needs no network. */
+export function SavePage(about: AboutCreature) {
+  const [busy, setBusy] = useState(false);
+  const leaving = useLeaving();
+  const save = async () => {
+    setBusy(true);
+    try {
+      const page = await made(about, leaving);
+      saveFile(page, `creature-${shortId(about.creature.sha256)}.html`);
+      showToast({ kind: "note", text: text.savedPage(bytes(page.size)) });
+    } catch (error) {
+      if (!leaving.aborted) showFailure(error);
+    }
+    setBusy(false);
+  };
+  return (
+    <button disabled={busy} onClick={() => void save()} title={text.savePageAbout}>
+      {busy ? text.savingPage : text.savePage}
+    </button>
+  );
+}
+
+const made = async (about: AboutCreature, signal: AbortSignal): Promise<Blob> =>
+  (await import("../offline/page")).pageOf(about, signal);

@@ -3,11 +3,11 @@
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { ColourBar } from "../ui/ColourBar";
 import { css, diverging, lut } from "../ui/colours";
-import type { Playhead } from "../replay/playhead";
+import type { Playhead } from "../replay/clock";
 import { useTheme } from "../ui/canvas";
 import { text } from "./text";
 
-export interface Matrix {
+interface Matrix {
   columns: number;
   rows: number;
   /** (column, row); the first row is drawn lowest. */
@@ -29,7 +29,7 @@ interface Props {
   timeAt?: (position: number) => number;
 }
 
-export interface HeatCell {
+interface HeatCell {
   column: number;
   row: number;
 }

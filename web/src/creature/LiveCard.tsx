@@ -7,7 +7,7 @@ import { usePolled } from "../store/polling";
 import { CheckCard } from "./CheckCard";
 import { type Others, LiveView } from "./live/LiveView";
 import { text } from "./live/text";
-import { useLive } from "./live/useLive";
+import { useLive } from "./live/LiveStage";
 import { text as cards } from "./text";
 
 interface Props {

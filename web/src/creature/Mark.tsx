@@ -1,4 +1,8 @@
-/** A sign with a word for screen readers: good or bad. */
+/** Signs of what is good or bad, and whether numbers are those of a record. */
+
+import { text } from "./text";
+
+/** A sign with a word for screen readers. */
 
 export function Mark({ good, word }: { good: boolean; word: string }) {
   return (
@@ -7,4 +11,9 @@ export function Mark({ good, word }: { good: boolean; word: string }) {
       <span class="unseen">{word}</span>
     </span>
   );
+}
+
+/** A badge: every number equals the recorded one, or some differ. */
+export function Agreement({ same }: { same: boolean }) {
+  return <span class={`badge ${same ? "finished" : "paused"}`}>{same ? text.identical : text.differs}</span>;
 }

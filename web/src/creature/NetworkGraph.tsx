@@ -1,6 +1,7 @@
 /** A creature's network: inputs at the left, outputs at the right, weights as lines. */
 
 import type { NetworkPositions } from "../api/types";
+import { ACTIVATIONS } from "../decode/activations";
 import type { Link, Network, Neuron } from "../decode/network";
 import { number } from "../ui/format";
 import { text } from "./text";
@@ -146,25 +147,19 @@ function Node({ neuron, at, onSelect, ...graph }: NodeProps) {
   );
 }
 
-const SHAPES: Record<string, (x: number) => number> = {
-  identity: (x) => x,
-  sigmoid: (x) => 2 / (1 + Math.exp(-4 * x)) - 1,
-  tanh: (x) => Math.tanh(2.5 * x),
-  relu: (x) => 1.6 * Math.max(0, x) - 0.8,
-  sin: (x) => Math.sin(Math.PI * x),
-  cos: (x) => Math.cos(Math.PI * x),
-  gaussian: (x) => 1.8 * Math.exp(-4 * x * x) - 0.9,
-  abs: (x) => 1.6 * Math.abs(x) - 0.8,
-  square: (x) => 1.6 * x * x - 0.8,
-};
+/** Half the width and half the height of a graph, in pixels. */
+const [HALF_WIDTH, HALF_HEIGHT] = [7.5, 5.8];
 
-/** The graph of a node's activation function, inside its circle. */
+/** The graph of a node's activation function from −π to π, inside its circle. */
 function Curve({ activation }: { activation: string }) {
-  const shape = SHAPES[activation];
-  if (!shape) return null;
-  const points = Array.from({ length: 25 }, (_, i) => {
-    const x = i / 12 - 1;
-    return `${(7.5 * x).toFixed(1)},${(-6.5 * shape(x)).toFixed(1)}`;
+  const apply = ACTIVATIONS[activation];
+  if (!apply) return null;
+  const places = Array.from({ length: 25 }, (_, i) => i / 12 - 1);
+  const values = places.map((place) => apply(Math.PI * place));
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const points = places.map((place, i) => {
+    const up = (2 * (values[i]! - low)) / (high - low) - 1;
+    return `${(HALF_WIDTH * place).toFixed(1)},${(-HALF_HEIGHT * up).toFixed(1)}`;
   });
   return <polyline class="shape" points={points.join(" ")} />;
 }

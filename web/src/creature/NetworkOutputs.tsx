@@ -4,8 +4,9 @@ import { useCallback, useMemo, useState } from "preact/hooks";
 import type { Spec } from "../api/types";
 import type { Network, Neuron } from "../decode/network";
 import { COLUMNS, type Activations, ROWS, activationsOf, inputsOf, phaseOf } from "../decode/activations";
-import { number } from "../ui/format";
-import type { Playhead } from "../replay/playhead";
+import { capitalised, number } from "../ui/format";
+import { Slider } from "../ui/Select";
+import type { Playhead } from "../replay/clock";
 import { DivergingLegend, HeatMap } from "./HeatMap";
 import { text } from "./text";
 
@@ -51,18 +52,13 @@ function OutputMaps({ network, selected, control, steps, playhead, every }: Prop
         )}
       </p>
       {inputs.senses && (
-        <label class="compact">
-          {text.sensedEnergy}
-          <input
-            type="range"
-            min="0"
-            max="2"
-            step="0.05"
-            value={energy}
-            onInput={(event) => setEnergy(event.currentTarget.valueAsNumber)}
-          />
+        <Slider
+          {...{ title: text.sensedEnergy, min: 0, max: 2, step: 0.05 }}
+          value={energy}
+          onChange={setEnergy}
+        >
           <output>{number(energy)}</output>
-        </label>
+        </Slider>
       )}
       <div class="output-pictures">
         {outputs.map((neuron) => (
@@ -103,7 +99,7 @@ function OutputMap({ neuron, activations, inputs, playhead, every, selected }: O
   const range = squashed(neuron) ? "" : text.upTo(number(limit, 2));
   return (
     <figure class={selected ? "selected" : ""}>
-      <figcaption>{name.charAt(0).toUpperCase() + name.slice(1)}</figcaption>
+      <figcaption>{capitalised(name)}</figcaption>
       <HeatMap
         matrix={{ columns: COLUMNS, rows: ROWS, values }}
         label={text.outputOf(name)}

@@ -6,8 +6,8 @@ import type { Measurement } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { number, words } from "../ui/format";
 import { type Column, Table } from "../ui/Table";
-import { CheckCard } from "./CheckCard";
-import { useCheck } from "./check";
+import { useCheck, CheckCard } from "./CheckCard";
+import { Agreement } from "./Mark";
 import { text } from "./text";
 
 export function RemeasureCard({ sha }: { sha: string }) {
@@ -24,7 +24,7 @@ export function RemeasureCard({ sha }: { sha: string }) {
       {...{ note, error }}
       name="measured"
       title={text.remeasured}
-      verdict={result && <Agreement exact={result.exact} />}
+      verdict={result && <Agreement same={result.exact} />}
       button={mayStart ? (result ? text.measureAgain : text.measure) : null}
       onStart={() => void start()}
       running={running ? text.measuring : null}
@@ -35,19 +35,13 @@ export function RemeasureCard({ sha }: { sha: string }) {
   );
 }
 
-function Agreement({ exact }: Pick<Measurement, "exact">) {
-  return (
-    <span class={`badge ${exact ? "finished" : "paused"}`}>{exact ? text.identical : text.differs}</span>
-  );
-}
-
 const COLUMNS: Column<Measurement["figures"][number]>[] = [
   { title: text.number, cell: ({ name }) => words(name) },
   { title: text.recorded, cell: ({ recorded }) => number(recorded, 6) },
   { title: text.here, cell: ({ measured }) => number(measured, 6) },
 ];
 
-function MeasurementResult({ exact, device, recorded_device, fitness, figures }: Measurement) {
+function MeasurementResult({ exact, device, recorded_device, fitness, figures, missing }: Measurement) {
   const same = device === recorded_device;
   return (
     <>
@@ -55,6 +49,7 @@ function MeasurementResult({ exact, device, recorded_device, fitness, figures }:
         {exact
           ? text.allIdentical
           : text.fitnessDiffers(number(fitness.measured, 6), number(fitness.recorded, 6))}{" "}
+        {missing.length > 0 && text.notRecorded(missing.length)}{" "}
         {same ? text.sameDevice : text.otherDevice(device, recorded_device)}
       </p>
       {figures.length > 0 && (

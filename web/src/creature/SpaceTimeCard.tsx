@@ -3,7 +3,7 @@
 import { useCallback, useMemo } from "preact/hooks";
 import type { Replay } from "../decode/replay";
 import { anglesOf, lengthsOf, colourLimit } from "../decode/shape";
-import type { Playhead } from "../replay/playhead";
+import type { Playhead } from "../replay/clock";
 import { setQuery } from "../store/router";
 import { number, percent } from "../ui/format";
 import { Card } from "../ui/Page";

@@ -1,8 +1,8 @@
 import { describe, expect, it, test } from "vitest";
 import type { Ancestors, Creature, Relative } from "../api/types";
-import { familyLayoutOf } from "./familyLayout";
+import { familyLayoutOf } from "./FamilyCard";
 import { couplingRows, groupsOf } from "./facts";
-import { barsOf } from "./GeneStrip";
+import { barsOf } from "./GenomeCard";
 import { nextCell } from "./HeatMap";
 
 describe("a heat map", () => {
@@ -72,7 +72,7 @@ describe("facts", () => {
       "Fitness",
       "Displacement",
       "Connections",
-      "Mach number",
+      "Largest Mach number",
     ]);
   });
 

@@ -55,7 +55,7 @@ describe("a creature file", () => {
       "Reynolds number": "2",
       "Strouhal number": "0.4",
       "Sperm number": "0.93",
-      "Mach number": "0.05",
+      "Largest Mach number": "0.05",
     });
     expect(Object.fromEntries(groupsOf(creature).flatMap(({ rows }) => rows))).not.toHaveProperty(
       "Sperm number",
@@ -94,7 +94,7 @@ describe("a creature file", () => {
       Period: "600 steps",
       "Displacement along x in the last cycle": "2 cells",
       "Reynolds number": "12.5",
-      "Limits active": "25 % of node steps",
+      "Node steps at a limit": "25 %",
     });
     expect(facts).not.toHaveProperty("Fitness");
   });

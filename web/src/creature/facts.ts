@@ -3,6 +3,7 @@
 import type { Creature, Genome, Spec } from "../api/types";
 import { couplingFacts } from "../ui/coupling";
 import { number, words } from "../ui/format";
+import { GROUPS, type Titled, groupOf, titleOf, valueOf } from "../ui/measures";
 import { text } from "./text";
 
 type Row = [name: string, value: string];
@@ -13,49 +14,27 @@ export interface Group {
 }
 
 /** The declaration of a plug-in in a creature file. */
-interface Plugin {
-  title: string;
-  unit: string;
+interface Plugin extends Titled {
   source: string;
 }
-
-const FORM = ["segments", "free_ends", "rings", "total_length", "form_symmetry", "form_aspect", "ungrown"];
-
-/** Groups of measures; all others belong to the result. */
-const GROUPS: [title: string, names: string[]][] = [
-  [text.control, ["bending_effort", "stretching_effort", "power", "efficiency"]],
-  [
-    text.shapeGroup,
-    ["curvature_mean", "curvature_spread", "symmetry", "rotation", "turning", "nodes", "crossing"],
-  ],
-  [text.formGroup, FORM],
-  [text.network, ["hidden_nodes", "connections"]],
-  [text.flow, ["reynolds", "strouhal", "sperm", "mach", "limited", "impulse"]],
-];
 
 /** Groups of rows; `sperm` is the sperm number, which is no measure: it follows from the genes. */
 export function groupsOf(creature: Creature, sperm: number | null = null): Group[] {
   const { measured, identity } = creature;
-  if (!measured) return [{ title: text.resultGroup, rows: [[text.fitness, text.notMeasured]] }];
+  const [[result, title]] = GROUPS as [[string, string]];
+  if (!measured) return [{ title, rows: [[text.fitness, text.notMeasured]] }];
   const plugins = measuringPlugins(creature);
   const numbers = sperm === null ? {} : { sperm };
   const measures = Object.entries({ ...measured.descriptors, ...measured.measures, ...numbers });
-  const rowsOf = (belongs: (name: string) => boolean) =>
-    measures.filter(([name]) => belongs(name)).map(([name, value]) => measureRow(name, value, plugins[name]));
-  const grouped = GROUPS.flatMap(([, names]) => names);
   const fitness: Row = [text.fitness, number(measured.fitness, 6)];
-  const result = [
-    ...(identity.genome.encoding === "gait" ? [] : [fitness]),
-    ...rowsOf((name) => !grouped.includes(name)),
-  ];
-  const others = GROUPS.map(([title, names]) => ({ title, rows: rowsOf((name) => names.includes(name)) }));
-  return [{ title: text.resultGroup, rows: result }, ...others.filter(({ rows }) => rows.length > 0)];
-}
-
-function measureRow(name: string, value: number, plugin: Plugin | undefined): Row {
-  const [title, unit, digits] = text.measures[name] ?? [plugin?.title ?? words(name), plugin?.unit ?? "", 6];
-  const shown = number(unit.startsWith("%") ? 100 * value : value, digits);
-  return [title, unit ? `${shown} ${unit}` : shown];
+  const groups = GROUPS.map(([key, title]): Group => {
+    const inside = measures.filter(([name]) => groupOf(name) === key);
+    const rows = inside.map(([name, value]): Row => {
+      return [titleOf(name, plugins[name]), valueOf(name, value, plugins[name])];
+    });
+    return { title, rows: key === result && identity.genome.encoding !== "gait" ? [fitness, ...rows] : rows };
+  });
+  return groups.filter(({ rows }, i) => i === 0 || rows.length > 0);
 }
 
 /** Plug-ins that measured a creature, by name. */

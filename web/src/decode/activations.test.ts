@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import type { Genes, Spec, Vector } from "../api/types";
-import { layeredOf } from "./layers";
+import type { Genes, Spec } from "../api/types";
 import { networkOf } from "./network";
 import { ROWS, activationsOf, inputsOf, phaseOf } from "./activations";
 import cases from "./networks.fixture.json";
@@ -8,8 +7,7 @@ import cases from "./networks.fixture.json";
 describe("the values of a network", () => {
   cases.forEach(({ genome, steps, expected }, number) => {
     it(`equal those of the engine, network ${number + 1}`, () => {
-      const inherited = genome as unknown as Genes & Vector;
-      const network = "nodes" in genome ? networkOf(inherited) : layeredOf(inherited)!;
+      const network = networkOf(genome as unknown as Genes);
       const { values } = activationsOf(network, genome.control as unknown as Spec, steps);
       const outputs = network.neurons.filter(({ role }) => role === "output");
       outputs.forEach(({ id }, output) => {

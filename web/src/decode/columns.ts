@@ -1,6 +1,4 @@
-/** Columns as bytes: a JSON header, then one little-endian array after another. */
-
-import { readHeader } from "./header";
+/** Files as bytes: a JSON header after its length, then one little-endian array after another. */
 
 export const COLUMNS = "application/vnd.microcosmos.columns";
 
@@ -63,7 +61,7 @@ function decoded(name: string, values: Values, [length = 0, width]: number[]): u
   return width === undefined ? Array.from(values) : rows(values, length, width).map((row) => Array.from(row));
 }
 
-/** Not a number stands for an unknown value. */
+/** NaN stands for an unknown value. */
 const numbers = (values: Values) => Array.from(values, (value) => (Number.isNaN(value) ? null : value));
 
 const rows = (values: Values, length: number, width: number) =>
@@ -73,4 +71,19 @@ export function hexadecimal(bytes: Values): string {
   let text = "";
   for (const byte of bytes) text += HEX[byte];
   return text;
+}
+
+/** The header and the offset after it; `what` names the file in errors. */
+export function readHeader<T>(
+  buffer: ArrayBuffer,
+  what: string,
+  format: string,
+): { header: T; start: number } {
+  const length = new DataView(buffer).getUint32(0, true);
+  if (4 + length > buffer.byteLength) {
+    throw new Error(`${what}: a header of ${length} bytes does not fit in ${buffer.byteLength}`);
+  }
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+  if (header.format !== format) throw new Error(`${what}: format must be ${format}, got ${header.format}`);
+  return { header, start: 4 + length };
 }

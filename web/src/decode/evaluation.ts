@@ -26,12 +26,14 @@ export interface Goal {
 
 interface Header {
   creature: string;
-  /** What of the creature the kernel lacks; null if it carries out all of it. */
+  /** The part of the creature that the kernel lacks; null if it carries out all of it. */
   uncovered: string | null;
   /** Null where a plug-in measures the fitness. */
   goal: Goal | null;
   /** Names of the measures that the kernel returns, in its order. */
   measures: string[];
+  /** Names of the measures of which the largest over all placements and trials counts. */
+  largest: string[];
   /** Steps of the last cycle, over which a gait's displacement counts; null for a creature with a genome. */
   cycle: number | null;
   /** Copies of the creature, which carry out the rest shapes of the first. */

@@ -1,10 +1,18 @@
-/** Little-endian float32 arrays, in buffers and as base64, on any machine. */
+/** Numbers in buffers and as base64; they are little-endian, as every machine on which browsers run. */
 
-export function floatsAt(buffer: ArrayBuffer, start: number, count: number): Float32Array {
-  const view = new DataView(buffer, start, 4 * count);
-  const values = new Float32Array(count);
-  for (let i = 0; i < count; i++) values[i] = view.getFloat32(4 * i, true);
-  return values;
+/** The numbers at an offset, which needs no alignment. */
+export const floatsAt = (buffer: ArrayBuffer, start: number, count: number) =>
+  new Float32Array(buffer.slice(start, start + 4 * count));
+
+/** Places (place, 2) in cells, which a file holds as int16 units about an origin. */
+export function decodePlaces(
+  buffer: ArrayBuffer,
+  start: number,
+  count: number,
+  { origin, scale }: { origin: [number, number]; scale: number },
+): Float32Array {
+  const units = new Int16Array(buffer.slice(start, start + 4 * count));
+  return Float32Array.from(units, (unit, i) => origin[i % 2]! + scale * unit);
 }
 
 export function decodeFloats(text: string): Float32Array {

@@ -2,7 +2,8 @@
 
 import { describe, expect, it } from "vitest";
 import zoo from "../../../docs/pictures/zoo-0.json";
-import { canonical, nameOf, sha256 } from "./identity";
+import { canonical } from "./canonical";
+import { nameOf, sha256 } from "./identity";
 
 describe("the hash", () => {
   it.each([0, 1, 55, 56, 63, 64, 65, 1000])("of %i bytes is SHA-256", async (length) => {

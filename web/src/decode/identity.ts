@@ -1,14 +1,8 @@
-/** Names of creatures: the SHA-256 of an identity's canonical JSON (RFC 8785). */
+/** Names of creatures: the SHA-256 of an identity's canonical JSON. */
+
+import { canonical } from "./canonical";
 
 export const nameOf = (identity: unknown) => sha256(new TextEncoder().encode(canonical(identity)));
-
-/** JSON without spaces, with the names of each object in order. */
-export function canonical(value: unknown): string {
-  if (Array.isArray(value)) return `[${value.map(canonical).join()}]`;
-  if (value === null || typeof value !== "object") return JSON.stringify(value);
-  const entries = Object.entries(value).sort(([a], [b]) => (a < b ? -1 : 1));
-  return `{${entries.map(([name, part]) => `${JSON.stringify(name)}:${canonical(part)}`).join()}}`;
-}
 
 /** The first 32 bits of the fractional parts of the roots of primes. */
 const fractions = (primes: number[], power: number) =>

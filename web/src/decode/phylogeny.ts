@@ -2,7 +2,7 @@
 
 import { hexadecimal, readColumns } from "./columns";
 
-/** In columns of numbers: no run, no operator, an unknown generation, an elite that was not lost. */
+/** The number for no run, no operator, an unknown generation, and an elite that was not lost. */
 export const NONE = -1;
 
 export interface Phylogeny {
@@ -15,14 +15,14 @@ export interface Phylogeny {
   /** (links, 2): rows of a child and of a parent; the first link of a child is its first parent. */
   links: Int32Array;
   run: Int32Array;
-  /** Of the run. */
+  /** The generation of the run. */
   generation: Int32Array;
   /** The generation in which its last cell went to another. */
   lost: Int32Array;
   operator: Int32Array;
   /** Generations since the first ancestor, over all runs. */
   time: Int32Array;
-  /** Not a number where it is unknown. */
+  /** NaN where it is unknown. */
   fitness: Float64Array;
 }
 

@@ -1,7 +1,7 @@
 /** Pose streams: the recorded poses of one creature over its last two strokes, without the fluid. */
 
-import { floatsAt } from "./floats";
-import { readHeader } from "./header";
+import { decodePlaces, floatsAt } from "./floats";
+import { readHeader } from "./columns";
 
 interface Header {
   creature: string;
@@ -34,15 +34,13 @@ export interface PoseStream {
 
 export function decodePoses(buffer: ArrayBuffer): PoseStream {
   const { header, start } = readHeader<Header>(buffer, "pose stream", "microcosmos-poses/1");
-  const { frames, nodes, moments, origin, scale } = header;
-  const count = 2 * frames * nodes;
+  const { frames, nodes, moments } = header;
   const first = start + 8 * moments;
-  if (first + 2 * count !== buffer.byteLength) {
-    throw new Error(`pose stream: needs ${first + 2 * count} bytes, got ${buffer.byteLength}`);
+  const needed = first + 4 * frames * nodes;
+  if (needed !== buffer.byteLength) {
+    throw new Error(`pose stream: needs ${needed} bytes, got ${buffer.byteLength}`);
   }
-  const units = new DataView(buffer, first);
-  const positions = new Float32Array(count);
-  for (let i = 0; i < count; i++) positions[i] = origin[i % 2]! + scale * units.getInt16(2 * i, true);
+  const positions = decodePlaces(buffer, first, frames * nodes, header);
   return { header, path: floatsAt(buffer, start, 2 * moments), positions };
 }
 

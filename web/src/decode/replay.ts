@@ -1,7 +1,7 @@
 /** Replays: the recorded motion of one creature, its drive and the fluid around it. */
 
 import { floatsAt } from "./floats";
-import { readHeader } from "./header";
+import { readHeader } from "./columns";
 
 export interface Header {
   creature: string;
@@ -56,6 +56,20 @@ export function decodeReplay(buffer: ArrayBuffer): Replay {
   const packets = new Uint8Array(buffer, at - byteCounts[2]!, byteCounts[2]);
   const floats = { positions: positions!, angles: angles!, lengths: lengths! };
   return { header, ...floats, vorticity: vorticity!, velocity: velocity!, energy: packets };
+}
+
+type Moving = Pick<Replay, "positions" | "vorticity"> & Partial<Replay>;
+
+/** A replay without what moves the body, and without any field that is not given. */
+export function motionOnly(
+  header: Omit<Header, "joints" | "velocity" | "energy" | "fitness"> & Partial<Header>,
+  arrays: Moving,
+): Replay {
+  const fitness = { recorded: null, replayed: null, difference: null };
+  const absent = { joints: [], velocity: { scale: 0 }, energy: { scale: 0, frames: 0 }, fitness };
+  const [angles, lengths] = [new Float32Array(0), new Float32Array(0)];
+  const fields = { velocity: new Int8Array(0), energy: new Uint8Array(0) };
+  return { header: { ...absent, ...header }, angles, lengths, ...fields, ...arrays };
 }
 
 /** The solid cells of runs in a world so high, as columns of neighbours along y: x, the first y, and how many. */

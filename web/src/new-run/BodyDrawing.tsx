@@ -1,9 +1,9 @@
 /** A scale drawing of a spec: bodies at rest in their worlds, and target pictures. */
 
-import { useEffect, useRef } from "preact/hooks";
-import type { Drawing, DrawnBody, DrawnPicture } from "../api/types";
+import type { Drawing, DrawnBody } from "../api/types";
 import { solidColumns } from "../decode/replay";
 import { count, words } from "../ui/format";
+import { Picture } from "../ui/Picture";
 import { text } from "./text";
 
 export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
@@ -24,7 +24,7 @@ export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
       {pictures.length > 0 && (
         <div class="targets row" role="group" aria-label={text.targets}>
           {pictures.map((picture) => (
-            <Target key={picture.name} picture={picture} />
+            <Picture key={picture.name} of={picture} rgb={BLACK} label={text.picture(picture.name)} />
           ))}
         </div>
       )}
@@ -35,6 +35,8 @@ export function BodyDrawing({ drawing }: { drawing: Drawing | null }) {
     </figure>
   );
 }
+
+const BLACK = [0, 0, 0];
 
 /** More bodies than these are drawn without most of the water around them. */
 const MAX_WHOLE = 6;
@@ -116,19 +118,6 @@ function Filaments({ body, x, y, thin }: { body: DrawnBody; x: number; y: number
 
 function caption({ nodes, edges, whole }: DrawnBody): string {
   return text.caption(count(nodes), whole ? null : count(edges.length));
-}
-
-function Target({ picture }: { picture: DrawnPicture }) {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const { name, width, height, pixels } = picture;
-  useEffect(() => {
-    const context = canvas.current!.getContext("2d")!;
-    const image = context.createImageData(width, height);
-    const ink = atob(pixels);
-    for (let i = 0; i < ink.length; i++) image.data[4 * i + 3] = ink.charCodeAt(i);
-    context.putImageData(image, 0, 0);
-  }, [pixels, width, height]);
-  return <canvas ref={canvas} width={width} height={height} role="img" aria-label={text.picture(name)} />;
 }
 
 export const GRID = 8;

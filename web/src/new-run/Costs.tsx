@@ -1,9 +1,9 @@
 /** Estimated costs: time, memory, evaluations and work, and errors that the server finds. */
 
-import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { Problem, messageOf } from "../api/problem";
 import type { Estimate, Experiment, FieldError, Preset, SweepEstimate } from "../api/types";
+import { useFetched } from "../store/fetch";
 import { text } from "./text";
 import type { ComponentChildren } from "preact";
 import { Card } from "../ui/Page";
@@ -29,38 +29,24 @@ export function useEstimate<Requested, T>(
   requested: Requested | null,
   estimateOf: (requested: Requested) => Promise<T>,
 ): Check<T> {
-  const unchecked = { estimate: null, errors: [], problem: null };
-  const [check, setCheck] = useState<Check<T>>(unchecked);
-  useEffect(() => {
-    if (requested === null) return setCheck(unchecked);
-    let current = true;
-    const show = (next: Partial<Check<T>>) => current && setCheck({ ...unchecked, ...next });
-    const timer = setTimeout(() => {
-      estimateOf(requested).then(
-        (estimate) => show({ estimate }),
-        (error) => show(serverErrors(error)),
-      );
-    }, TYPING_PAUSE_MS);
-    return () => {
-      current = false;
-      clearTimeout(timer);
-    };
-  }, [requested]);
-  return check;
+  const ask = async (): Promise<Check<T>> => {
+    if (requested === null) return UNCHECKED;
+    return estimateOf(requested).then(
+      (estimate) => ({ ...UNCHECKED, estimate }),
+      (error) => ({ ...UNCHECKED, ...serverErrors(error) }),
+    );
+  };
+  const { value } = useFetched(ask, [requested], TYPING_PAUSE_MS);
+  return (requested !== null && value) || UNCHECKED;
 }
+
+const UNCHECKED = { estimate: null, errors: [], problem: null };
 
 /** The estimated cost of each preset of an experiment; a preset without an answer shows none. */
 export function usePresetCosts({ presets }: Experiment): ReadonlyMap<Preset, Estimate> {
-  const [known, setKnown] = useState<ReadonlyMap<Preset, Estimate>>(new Map());
-  useEffect(() => {
-    for (const preset of presets.filter((one) => !known.has(one))) {
-      api.estimateRun(preset.spec).then(
-        (estimate) => setKnown((old) => new Map(old).set(preset, estimate)),
-        () => {},
-      );
-    }
-  }, [presets]);
-  return known;
+  const costOf = async (preset: Preset) => [preset, await api.estimateRun(preset.spec)] as const;
+  const { value } = useFetched(() => Promise.allSettled(presets.map(costOf)), [presets]);
+  return new Map(value?.flatMap((one) => (one.status === "fulfilled" ? [one.value] : [])));
 }
 
 interface Props {

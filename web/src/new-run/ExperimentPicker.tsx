@@ -27,21 +27,18 @@ export function ExperimentPicker({
     <>
       <fieldset class="experiments">
         <legend class="unseen">{text.experiment}</legend>
-        {experiments.map((one) => {
-          const [name, sentence] = one.title.split(": ") as [string, string?];
-          return (
-            <label key={one.experiment} class="experiment" title={words(sentence ?? "")}>
-              <input
-                type="radio"
-                name="experiment"
-                checked={one === selected}
-                onChange={() => onExperiment(one)}
-              />
-              <b>{name}</b>
-              <span class={one === selected ? "" : "unseen"}>{words(sentence ?? "")}</span>
-            </label>
-          );
-        })}
+        {experiments.map((one) => (
+          <label key={one.experiment} class="experiment" title={words(one.about)}>
+            <input
+              type="radio"
+              name="experiment"
+              checked={one === selected}
+              onChange={() => onExperiment(one)}
+            />
+            <b>{one.title}</b>
+            <span class={one === selected ? "" : "unseen"}>{words(one.about)}</span>
+          </label>
+        ))}
       </fieldset>
       <Presets {...{ selected, preset, estimates, onPreset }} />
     </>

@@ -4,9 +4,8 @@ import { useEffect, useState } from "preact/hooks";
 import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Spec } from "../api/types";
-import { LiveStage } from "../creature/live/LiveStage";
+import { useLive, LiveStage } from "../creature/live/LiveStage";
 import { noWishes } from "../creature/live/touch";
-import { useLive } from "../creature/live/useLive";
 import { useDebounced, usePolled } from "../store/polling";
 import { text } from "./text";
 

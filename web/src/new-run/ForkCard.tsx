@@ -39,7 +39,7 @@ function fromOf({ named, cells }: ForkSource): ForkRequest["from"] {
 }
 
 export function ForkCard({ fork, errors }: { fork: Fork; errors: readonly FieldError[] }) {
-  const wrong = errors.filter(({ field }) => isForkField(field)).map(({ message }) => message);
+  const wrong = errors.filter(({ field }) => isForkField(field)).map(({ reason }) => reason);
   return (
     <Card id="fork" kind="sweep-card" title={text.fork}>
       <p class="help">{text.forkAbout}</p>

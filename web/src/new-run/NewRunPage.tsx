@@ -1,4 +1,4 @@
-/** The page of a new run: choose a source, change its spec, see the cost, start. */
+/** The page of a new run: choose a source or open a document, change its spec, see the cost, start. */
 
 import { useEffect, useState } from "preact/hooks";
 import type { Experiment } from "../api/types";
@@ -6,14 +6,17 @@ import { useExperiments } from "../store/fetch";
 import { setQuery } from "../store/router";
 import { Loading, Page } from "../ui/Page";
 import { ExperimentPicker } from "./ExperimentPicker";
-import { BaseBar } from "./BaseBar";
+import { type CreatureFile, BaseBar } from "./BaseBar";
 import { Editor } from "./Editor";
 import { usePresetCosts } from "./Costs";
-import { baseOfPreset } from "./sources";
-import { type OpenDocument, OpenFileButton, useDocument } from "./OpenDocument";
-import { useDraft } from "./draftState";
+import { baseOfPreset, readText, completeSpec, baseOfDocument } from "./sources";
+import { type DraftState, useDraft } from "./draftState";
 import { text } from "./text";
 import "./new-run.css";
+import { messageOf } from "../api/problem";
+import { useListener } from "../store/polling";
+import { showToast } from "../store/toasts";
+import { FileButton, useFileDrop } from "../ui/DropTarget";
 
 export function NewRunPage({ query }: { query: URLSearchParams }) {
   const { value: experiments, error } = useExperiments();
@@ -77,5 +80,64 @@ function SourceButtons({ open, onPaste }: { open: OpenDocument; onPaste: () => v
         <OpenFileButton open={open} />
       </span>
     </>
+  );
+}
+
+/** Start from a document; return what is wrong with it, or null. */
+type OpenDocument = (text: string, name: string, typed?: boolean) => string | null;
+
+/** Start from documents; JSON typed in the editor changes the spec and keeps its source. */
+function useDocument(
+  draft: DraftState,
+  experiments: Experiment[],
+  selected: Experiment,
+  current: Experiment | undefined,
+): { open: OpenDocument; file: CreatureFile | null } {
+  const [file, setFile] = useState<CreatureFile | null>(null);
+  const open: OpenDocument = (text, name, typed = false) => {
+    try {
+      const read = readText(text, selected.experiment === "refinement");
+      const same = typed && read.kind === "spec" && read.spec.experiment === current?.experiment;
+      if (same) {
+        const spec = completeSpec(read.spec, experiments);
+        draft.change(() => spec);
+      } else {
+        draft.startFrom(baseOfDocument(read, name, experiments));
+        setFile(read.kind === "creature" ? { sha: read.creature.sha256, text } : null);
+      }
+      return null;
+    } catch (error) {
+      return messageOf(error);
+    }
+  };
+  useDocumentDrop(open);
+  return { open, file };
+}
+
+/** Handle text pasted outside fields, and dropped files. */
+function useDocumentDrop(open: OpenDocument): void {
+  useFileDrop(text.dropDocument, (file) => void readFile(open, file));
+  useListener("paste", (event: ClipboardEvent) => {
+    if ((event.target as Element).closest?.("input, textarea, select")) return;
+    const pasted = event.clipboardData?.getData("text") ?? "";
+    if (!pasted.trim()) return;
+    event.preventDefault();
+    showProblem(open(pasted, ""), text.pasted);
+  });
+}
+
+async function readFile(open: OpenDocument, file: File): Promise<void> {
+  showProblem(open(await file.text(), file.name), file.name);
+}
+
+function showProblem(problem: string | null, what: string): void {
+  if (problem) showToast({ kind: "wrong", text: `${what}: ${problem}` });
+}
+
+function OpenFileButton({ open }: { open: OpenDocument }) {
+  return (
+    <FileButton name={text.documentFile} onFile={(file) => void readFile(open, file)}>
+      {text.openFile}
+    </FileButton>
   );
 }

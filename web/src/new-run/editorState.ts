@@ -7,17 +7,17 @@ import { type Draft, discardDraft } from "../store/draft";
 import type { DraftState } from "./draftState";
 import { useEstimate, serverErrors } from "./Costs";
 import { isForkField, useFork } from "./ForkCard";
-import { schemaErrors, messagesByPath, withValue } from "./form/document";
+import { schemaErrors, errorsByPath, withValue, leavesOf, valueAt } from "./form/document";
 import type { FormState } from "./form/Entry";
 import { type Section, formOf } from "./form/fields";
 import { type Note, withPartner } from "./form/partners";
 import { withoutInitial } from "./initialCreatures";
 import { type SweepForm, isSweep, useSweepForm } from "./sweep";
-import { useNaming } from "./naming";
 import { text } from "./text";
 import { applyResponse } from "../store/store";
 import { navigate } from "../store/router";
 import { newIdempotencyKey } from "../ui/forms";
+import { number, words } from "../ui/format";
 
 export function useEditor(draft: DraftState, current: Draft, experiment: Experiment) {
   const { spec } = current;
@@ -36,7 +36,7 @@ export function useEditor(draft: DraftState, current: Draft, experiment: Experim
   const naming = useNaming(current.base.name, spec as Json, form, draft.changed);
   const alternative = useMemo(() => sweepRequest && { sweep: sweepRequest }, [sweepRequest]);
   const submission = useSubmission(spec, fork.request ?? alternative, naming.chosen);
-  const refused = (submission.refusal?.errors ?? []).map(fieldError);
+  const refused = submission.refusal?.errors ?? [];
   const errors = [...localErrors, ...(sweepRequest ? specErrors(refused) : refused), ...check.errors].filter(
     ({ field }) => !forking || !isForkField(field),
   );
@@ -64,7 +64,7 @@ function useLast<T>(value: T | undefined): T | null {
   return last.current;
 }
 
-/** What the fields of the form show, and how they change it. */
+/** The values that the form shows, and functions that change them. */
 function useFormState(draft: DraftState, form: Section, current: Draft, errors: FieldError[]): FormState {
   const [document, original] = [current.spec as Json, current.base.spec as Json];
   const [closed, close] = useClosed(form);
@@ -72,7 +72,7 @@ function useFormState(draft: DraftState, form: Section, current: Draft, errors: 
     document,
     original,
     changed: draft.changed,
-    messages: messagesByPath(errors, form, document),
+    errors: errorsByPath(errors, form, document),
     ...usePartners(draft, form, original, document),
     closed,
     close,
@@ -103,9 +103,6 @@ const specErrors = (errors: readonly FieldError[]): FieldError[] =>
     .filter(({ field }) => field.startsWith("spec."))
     .map((error) => ({ ...error, field: error.field.slice("spec.".length) }));
 
-/** An error about a creature may name a part of the spec: `control: inputs`. */
-const fieldError = (error: FieldError): FieldError => ({ ...error, field: error.field.replace(/: .*/, "") });
-
 const hasProblems = ({ problems: { seeds, axes, total } }: SweepForm) =>
   [seeds, total, ...axes].some((problem) => problem !== null);
 
@@ -127,14 +124,16 @@ export type Alternative = { sweep: SweepRequest } | { fork: ForkRequest };
 type Refusal = ReturnType<typeof serverErrors> & { requested: Spec | Alternative };
 
 /** Send the spec, or another request; the same request sent again after a lost answer has the same key. */
-export function useSubmission(spec: Spec, alternative: Alternative | null, name: string | null) {
+function useSubmission(spec: Spec, alternative: Alternative | null, name: string | null) {
   const requested = alternative ?? spec;
   const [busy, setBusy] = useState(false);
   const [refusal, setRefusal] = useState<Refusal | null>(null);
-  const sent = useRef<{ requested: Spec | Alternative; key: string } | null>(null);
+  const sent = useRef<{ requested: Spec | Alternative; name: string | null; key: string } | null>(null);
   const start = async () => {
     if (busy) return;
-    if (sent.current?.requested !== requested) sent.current = { requested, key: newIdempotencyKey() };
+    if (sent.current?.requested !== requested || sent.current.name !== name) {
+      sent.current = { requested, name, key: newIdempotencyKey() };
+    }
     setBusy(true);
     try {
       const page = await submit(spec, alternative, sent.current.key, name);
@@ -163,4 +162,38 @@ async function submit(
 function showFirstError(): void {
   document.querySelector<HTMLElement>("[aria-invalid=true]")?.focus();
   document.querySelector(".spec-form .wrong-text")?.scrollIntoView({ block: "center" });
+}
+
+/** Changes that a name tells. */
+const MOST = 3;
+
+/** The name of a new run, made from what differs from its source unless one is typed. */
+function useNaming(source: string, document: Json, form: Section, changed: ReadonlySet<string>) {
+  const [typed, type] = useState("");
+  const suggested = nameOf(source, document, form, changed);
+  return { typed, type, suggested, chosen: typed.trim() || suggested };
+}
+
+/** `Demo, viscosity 0.2, nodes 32`; null if nothing differs that a few words can tell. */
+export function nameOf(
+  source: string,
+  document: Json,
+  form: Section,
+  changed: ReadonlySet<string>,
+): string | null {
+  const told = leavesOf(form, document).flatMap(({ path, title }) => {
+    const value = valueAt(document, path);
+    if (!changed.has(path) || value === null || typeof value === "object") return [];
+    const shown = typeof value === "number" ? number(value, 4) : String(value).replaceAll("_", " ");
+    return [`${title.toLowerCase()} ${shown}`];
+  });
+  if (told.length === 0) return null;
+  return [titleOf(source), ...told.slice(0, MOST)].filter(Boolean).join(", ");
+}
+
+/** The title of a preset, with its experiment unless that is the usual one; ids have none. */
+function titleOf(source: string): string | null {
+  const [experiment, preset] = source.split("/") as [string, string | undefined];
+  if (!preset) return null;
+  return words(experiment === "quality-diversity" ? preset : `${experiment.replaceAll("-", " ")} ${preset}`);
 }

@@ -36,11 +36,12 @@ const CREATURE = {
 };
 
 vi.mock("../api/client", () => ({
-  readRun: async (id: string) => ({ id, spec: RUNS[id] }),
-  readArchive: async (_: string, __: string[], { generation }: { generation?: number }) =>
-    generation === 0
-      ? { cell: [], creature: [], generation }
-      : { cell: [2, 3, 5, 9], creature: ["x", "y", "z", "x"], generation: Math.min(generation ?? 8, 8) },
+  readRun: async (id: string) => ({ id, spec: RUNS[id], generation: 8 }),
+  readArchive: async (_: string, __: string[], { generation }: { generation?: number }) => {
+    if (generation === 0) return { cell: [], creature: [], generation };
+    if ((generation ?? 8) > 8) throw new Error("the run is at generation 8");
+    return { cell: [2, 3, 5, 9], creature: ["x", "y", "z", "x"], generation: generation ?? 8 };
+  },
   readCreature: async () => CREATURE,
 }));
 

@@ -31,6 +31,7 @@ describe("a pasted or dropped document", () => {
   it.each([
     ["{", /Not valid JSON/],
     ["[1]", /got a list/],
+    ['{"experiment": "gaits", "seed": 1, "seed": 2}', /Not valid JSON.*“seed” is given twice/],
     ["7", /got number 7/],
     ["{}", /“experiment” must name the experiment; got nothing/],
     ['{"spec": {"experiment": 3}}', /“spec.experiment” .* got number 3/],

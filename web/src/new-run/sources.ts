@@ -17,6 +17,7 @@ import { isSearch, withInitial } from "./initialCreatures";
 import { count, shortId } from "../ui/format";
 import { text } from "./text";
 import { isObject } from "../run/spec/difference";
+import { parseJson } from "../decode/json";
 
 /** The largest number of initial creatures, as in the schema of `search.initial`. */
 export const MAX_CREATURES = 4096;
@@ -73,7 +74,10 @@ async function forkBase(
   }
   const spec = withInitial(completeSpec(run.spec, experiments), []);
   const chosen = named && { run: id, named, cells: null, at: null, creatures: named.length };
-  const fork = chosen ?? (await forkSource(id, cells ?? null, generationOf(at)));
+  const asked = generationOf(at);
+  // The run may have gone back behind a generation that an older address names.
+  const known = asked === null ? null : Math.min(asked, run.generation);
+  const fork = chosen ?? (await forkSource(id, cells ?? null, known));
   return { kind: "run", name: id, spec, fork };
 }
 
@@ -125,7 +129,7 @@ export function titleOfBase({ kind, name }: Base): string {
   return name || text.pastedSpec;
 }
 
-export type ReadDocument =
+type ReadDocument =
   | { kind: "spec"; spec: Spec }
   | { kind: "run"; spec: Spec; id: string }
   | { kind: "creature"; spec: Spec; creature: Creature };
@@ -138,7 +142,7 @@ export function readText(document: string, refine = false): ReadDocument {
 
 function parsed(document: string): Json {
   try {
-    return JSON.parse(document);
+    return parseJson(document);
   } catch (error) {
     throw new Error(text.noJson((error as Error).message));
   }
@@ -168,11 +172,8 @@ function describe(value: Json | undefined): string {
   return value === null ? "null" : `${typeof value} ${JSON.stringify(value).slice(0, 40)}`;
 }
 
-/** Encodings with numeric genes, which NEAT's mutations do not vary. */
-const NUMERIC_ENCODINGS = ["direct", "weights"];
-
 /** A run in a creature's world, with its body, coupling, controller and task. */
-export function specOf(creature: Creature): Spec {
+function specOf(creature: Creature): Spec {
   const { genome, body, task } = creature.identity;
   const { coupling, ...world } = creature.identity.world as Spec & { coupling: Json };
   if (genome.encoding === "gait") return gaitSpec(genome, world);
@@ -186,7 +187,8 @@ export function specOf(creature: Creature): Spec {
     control,
     ...(room && { genome: room }),
     task,
-    ...((NUMERIC_ENCODINGS.includes(genome.encoding) || isPlugin(genome.encoding)) && {
+    // NEAT's mutations do not vary numeric genes.
+    ...((genome.encoding === "direct" || isPlugin(genome.encoding)) && {
       search: { emitters: [{ operator: "iso+line" }] },
     }),
   };

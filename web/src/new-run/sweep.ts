@@ -50,7 +50,7 @@ export const isSweep = ({ seeds, axes }: SweepForm) => axes.length > 0 || seeds.
 /** Errors of the server for one field of the grid, or for the seeds. */
 export function errorsAt(errors: readonly FieldError[], path: string): string[] {
   const matching = errors.filter(({ field }) => field === path || field.startsWith(`${path}[`));
-  return matching.map(({ message }) => message);
+  return matching.map(({ reason }) => reason);
 }
 
 export interface Axis {
@@ -69,7 +69,7 @@ export function nameOf({ path, title }: Leaf): string {
   return around.length > 0 ? `${around.join(" ")}: ${title.toLowerCase()}` : title;
 }
 
-export interface ParsedValues {
+interface ParsedValues {
   values: Json[];
   problem: string | null;
 }

@@ -4,7 +4,7 @@ const ACCEPTED = "a spec, a run from the API, or a creature file, in JSON";
 
 export const text = {
   minutes: "Minutes",
-  minutesAbout: "About as long, by the speed of earlier runs: it sets the generations.",
+  minutesAbout: "Estimated from the speed of earlier runs. It sets the number of generations.",
   restoredDraft: "Restored draft: ",
   changes: (count: number) =>
     `${count === 0 ? "Same as" : `${count} ${count === 1 ? "change" : "changes"} from`}`,

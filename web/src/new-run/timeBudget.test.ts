@@ -1,5 +1,5 @@
 import { expect, it } from "vitest";
-import { generationsIn, paceOf, shownMinutes } from "./TimeBudget";
+import { generationsIn, paceOf, shownMinutes } from "./SpecView";
 
 it.each([
   [2, 0, 0.5, 240],

@@ -1,35 +1,38 @@
-/** A creature as one HTML file that needs no network: the template with its data. */
+/** A creature as one HTML file that needs no network: the template with its data. `client.Replay` fills the same one. */
 
 import * as api from "../api/client";
 import type { Creature } from "../api/types";
-import { decodeReplay } from "../decode/replay";
 import { isInstalled, kernelBytes } from "../simulate/source";
 import { poll } from "../store/polling";
-import { packMotion } from "./motion";
 import { DATA, packed } from "./packing";
 
-/** What the page says about the creature. */
+/** Facts about the creature on the page. */
 export interface About {
   title: string;
   /** The address of its share; null without one that others can open. */
   address: string | null;
-  creature: Creature;
+  /** Null for a motion alone, which the library for notebooks puts into the same page. */
+  creature: Creature | null;
+  /** A note on parts that the motion leaves out. */
+  note?: string;
 }
+
+export type AboutCreature = About & { creature: Creature };
 
 const TEMPLATE = "/saved.html";
 
-/** Throws what the signal says when it is aborted. */
-export async function pageOf(about: About, signal: AbortSignal): Promise<Blob> {
+/** Throws the reason of the signal when it is aborted. */
+export async function pageOf(about: AboutCreature, signal: AbortSignal): Promise<Blob> {
   const sha = about.creature.sha256;
-  const [template, replay, evaluation, kernel] = await Promise.all([
+  const [template, motion, evaluation, kernel] = await Promise.all([
     fetch(TEMPLATE, { signal }).then((answer) => answer.text()),
-    ready(() => api.readReplay(sha), signal),
+    ready(() => api.readMotion(sha), signal),
     ready(() => api.readEvaluation(sha), signal),
     isInstalled ? kernelBytes() : null,
   ]);
   const data = {
     [DATA.about]: forScript(about),
-    [DATA.motion]: await packed(packMotion(decodeReplay(replay))),
+    [DATA.motion]: await packed(motion),
     [DATA.evaluation]: await packed(evaluation),
     ...(kernel && { [DATA.kernel]: await packed(kernel) }),
   };
@@ -53,7 +56,7 @@ export const forScript = (value: unknown) => JSON.stringify(value).replaceAll("<
 
 const escaped = (text: string) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
-/** Ask until the server has made it, or nobody wants it. */
+/** Ask until the server has made it, or the signal is aborted. */
 const ready = <T>(ask: () => Promise<T | null>, signal: AbortSignal) =>
   new Promise<T>((value, reject) => {
     signal.throwIfAborted();

@@ -7,6 +7,7 @@ import { inDays } from "../ui/format";
 import { Options } from "../ui/Select";
 import { useSubmit } from "../ui/forms";
 import { copyText } from "../ui/clipboard";
+import { FIELDS } from "./fields";
 import { Unreachable } from "./Unreachable";
 import { text } from "./text";
 import "./publish.css";
@@ -70,15 +71,16 @@ function PublishForm({ of, title, file, onDone, onEnd }: FormProps) {
 
 function Fields({ title, file }: Pick<Props, "title" | "file">) {
   const [term, setTerm] = useState<string>("never");
-  const licences = LICENCES.some(([name]) => name === (file?.licence ?? name))
-    ? LICENCES
-    : [[file!.licence, text.licenceOfFile(file!.licence)] as [string, string], ...LICENCES];
+  const licences = licencesFor(file);
+  const [licence, setLicence] = useState(file?.licence ?? licences[0]![0]);
   return (
     <>
-      <label class="over">
-        {text.title}
-        <input name="title" maxLength={200} defaultValue={title} placeholder={text.titleHint} />
-      </label>
+      {FIELDS.map(({ name, label, hint, longest, heading }) => (
+        <label key={name} class="over">
+          {label}
+          <input name={name} maxLength={longest} defaultValue={heading ? title : ""} placeholder={hint} />
+        </label>
+      ))}
       <label class="over">
         {text.credit}
         <input name="credit" maxLength={1000} placeholder={text.creditHint} />
@@ -88,7 +90,7 @@ function Fields({ title, file }: Pick<Props, "title" | "file">) {
       )}
       <label class="over">
         {text.licence}
-        <select name="licence" defaultValue={file?.licence ?? LICENCES[0]![0]}>
+        <select name="licence" value={licence} onChange={(event) => setLicence(event.currentTarget.value)}>
           <Options of={licences} />
         </select>
       </label>
@@ -111,6 +113,13 @@ function Fields({ title, file }: Pick<Props, "title" | "file">) {
   );
 }
 
+/** The licences to choose from. An archive has none of its own: the server joins those of its creatures. */
+export function licencesFor(file?: Pick<Creature, "licence">): [name: string, title: string][] {
+  if (!file) return [["", text.licenceOfAll], ...LICENCES];
+  if (LICENCES.some(([name]) => name === file.licence)) return LICENCES;
+  return [[file.licence, text.licenceOfFile(file.licence)], ...LICENCES];
+}
+
 /** The request of the form; empty fields are left out. */
 export function requestOf(form: FormData, now = Date.now()): ShareRequest {
   const value = (name: string) => String(form.get(name) ?? "").trim();
@@ -118,9 +127,9 @@ export function requestOf(form: FormData, now = Date.now()): ShareRequest {
     .split(",")
     .map((name) => name.trim());
   return {
-    ...(value("title") && { title: value("title") }),
+    ...Object.fromEntries(FIELDS.flatMap(({ name }) => (value(name) ? [[name, value(name)]] : []))),
     credit: credit.filter(Boolean),
-    licence: value("licence"),
+    licence: value("licence") || null,
     expires_at: endOf(value("term"), value("until"), now),
     listed: form.get("listed") === "on",
   };

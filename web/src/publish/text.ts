@@ -2,6 +2,10 @@
 
 export const text = {
   publish: "Publish",
+  /** Texts that a publisher may give; the page of the share shows those that are no heading. */
+  fields: [
+    { name: "title", label: "Title", hint: "Title of the shared page", longest: 200, heading: true },
+  ] as const,
   licences: {
     "CC-BY-4.0": "CC BY 4.0: attribution",
     "CC-BY-SA-4.0": "CC BY-SA 4.0: attribution, share alike",
@@ -16,11 +20,10 @@ export const text = {
     ["30", "In a month"],
     ["date", "On a date …"],
   ] as const,
+  licenceOfAll: "Licence of its creatures",
   licenceOfFile: (licence: string) => `${licence}: from the file`,
   about: (run: boolean) =>
     `Anyone with the link can see ${run ? "the current state of this archive" : "this creature"} and its ancestors without a token, and nothing else. You can revoke the link at any time.`,
-  title: "Title",
-  titleHint: "Title of the shared page",
   credit: "Credit",
   creditHint: "Names, separated by commas",
   creditOfFile: (names: string) => `The file already credits ${names}; this credit is kept.`,

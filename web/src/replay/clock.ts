@@ -1,7 +1,8 @@
-/** The clock of animations, and the keys of a player. */
+/** The clock of animations, the playhead that all parts of a page share, and the keys of a player. */
 
 import type { RefObject } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { useListener } from "../store/polling";
 import { prefersReducedMotion } from "../ui/canvas";
 import { TEXT_FIELDS } from "../ui/forms";
 
@@ -46,17 +47,68 @@ export function handlesKey(key: string, target: Element, player: Element | null)
 }
 
 export function useKeys(player: RefObject<Element | null>, keys: Record<string, () => void>): void {
-  const latest = useRef(keys);
-  latest.current = keys;
-  useEffect(() => {
-    const press = (event: KeyboardEvent) => {
-      if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-      const action = latest.current[event.key];
-      if (!action || !handlesKey(event.key, event.target as Element, player.current)) return;
-      event.preventDefault();
-      action();
-    };
-    window.addEventListener("keydown", press);
-    return () => window.removeEventListener("keydown", press);
-  }, []);
+  useListener("keydown", (event: KeyboardEvent) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    const action = keys[event.key];
+    if (!action || !handlesKey(event.key, event.target as Element, player.current)) return;
+    event.preventDefault();
+    action();
+  });
+}
+
+/** The time of a replay, and whether it plays. */
+export class Playhead {
+  /** In frames; may be a fraction. */
+  time = 0;
+  playing: boolean;
+  private readonly listeners = new Set<() => void>();
+
+  constructor(playing: boolean) {
+    this.playing = playing;
+  }
+
+  listen(listener: () => void): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  move(time: number): void {
+    this.time = time;
+    this.notify();
+  }
+
+  play(playing: boolean): void {
+    this.playing = playing;
+    this.notify();
+  }
+
+  /** Stop at a time. */
+  scrub(time: number): void {
+    this.playing = false;
+    this.move(time);
+  }
+
+  /** Stop at the next or previous frame. */
+  step(by: 1 | -1, last: number): void {
+    const whole = by > 0 ? Math.floor(this.time + 1e-6) + 1 : Math.ceil(this.time - 1e-6) - 1;
+    this.scrub(Math.min(last, Math.max(0, whole)));
+  }
+
+  private notify(): void {
+    for (const listener of [...this.listeners]) listener();
+  }
+}
+
+/** A playhead that moves; for people who prefer no motion, one that stands at a frame. */
+export function newPlayhead(still = 0): Playhead {
+  const playhead = new Playhead(!prefersReducedMotion());
+  if (!playhead.playing) playhead.time = still;
+  return playhead;
+}
+
+/** Redraw a component when the playhead moves, starts or stops. */
+export function usePlayhead(playhead: Playhead): Playhead {
+  const [, draw] = useState(0);
+  useEffect(() => playhead.listen(() => draw((n) => n + 1)), [playhead]);
+  return playhead;
 }

@@ -5,7 +5,7 @@ import { type Point, chainsOf, splineOf } from "./motion";
 
 /** In smaller squares, in pixels, straight edges cannot be told from a spline and are drawn faster. */
 const SMOOTH_SIDE = 80;
-/** In pixels: of shorter lines some are left out. */
+/** Shorter lines, in pixels, are partly left out. */
 const SHORTEST = 3;
 
 interface Shape {
@@ -105,7 +105,7 @@ export function velocityAt(stream: PoseStream, steps: number): Point {
   const { means, turn } = shapeOf(stream);
   const { frames } = stream.header;
   const [before, after, , loops] = momentOf(stream, steps);
-  // Nothing is recorded from the last frame to the first: there it has its mean velocity.
+  // Nothing is recorded from the last frame to the first, so the body has its mean velocity.
   const [first, last] = after > before ? [before, after] : [0, frames - 1];
   const between = loopOf(stream).every * (last - first);
   if (!(between > 0)) return [0, 0];
@@ -115,7 +115,7 @@ export function velocityAt(stream: PoseStream, steps: number): Point {
 
 type Square = readonly [left: number, top: number, side: number];
 
-/** What bodies and paths are traced on. */
+/** The path that bodies are traced on. */
 type Path = Pick<CanvasRenderingContext2D, "beginPath" | "moveTo" | "lineTo" | "bezierCurveTo" | "arc">;
 
 /** Trace the body some steps after its first frame, in the middle of a square; it turns on in each loop. */

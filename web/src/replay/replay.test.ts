@@ -1,10 +1,9 @@
 import { describe, expect, it } from "vitest";
 import { type Replay, decodeReplay } from "../decode/replay";
 import { replayBytes } from "../decode/replay.fixture";
-import { handlesKey } from "./clock";
+import { Playhead, handlesKey } from "./clock";
 import { coloursOf, fieldOf, fieldsOf } from "./fields";
-import { replayViewOf, queryOf } from "./replayView";
-import { Playhead } from "./playhead";
+import { replayViewOf, queryOf } from "./ReplayPlayer";
 import { Tracers, velocityAt } from "./tracers";
 
 const replay = decodeReplay(replayBytes());

@@ -1,11 +1,11 @@
 /** Load replays, which workers render on request. */
 
 import type { ComponentChildren } from "preact";
-import { useEffect, useState } from "preact/hooks";
+import { useMemo } from "preact/hooks";
 import * as api from "../api/client";
 import { type Replay, decodeReplay } from "../decode/replay";
 import { setNewest } from "../store/cache";
-import { poll } from "../store/polling";
+import { usePolled } from "../store/polling";
 import { text } from "./text";
 import "./replay.css";
 
@@ -18,43 +18,26 @@ interface Rendered {
 
 const cache = new Map<string, Replay>();
 
-interface State {
-  requested: string;
-  loaded: ReadonlyMap<string, Replay>;
-  note: string | null;
-  error: string | null;
-}
-
-const NOTHING: Omit<State, "requested"> = { loaded: new Map(), note: null, error: null };
-
 /** Replays of creatures; requests are repeated until they are rendered. */
 export function useReplays(shas: string[]): Rendered {
   const requested = shas.join();
-  const [state, setState] = useState<State>({ ...NOTHING, requested });
-  useEffect(() => {
-    const change = (part: Partial<State>) => setState((old) => ({ ...old, ...part }));
-    const add = (sha: string, replay: Replay) => {
-      setNewest(cache, sha, replay);
-      setState((old) => ({ ...old, loaded: new Map(old.loaded).set(sha, replay) }));
-    };
-    setState({ ...NOTHING, requested });
-    const stops = shas.map((sha) => {
-      const known = cache.get(sha);
-      if (known) return add(sha, known);
-      return poll(async () => decoded(await api.readReplay(sha)), {
-        value: (replay) => add(sha, replay),
-        note: (note) => change({ note }),
-        error: (error) => change({ error }),
-      });
-    });
-    return () => stops.forEach((stop) => stop?.());
-  }, [requested]);
-  const { loaded, note, error } = state.requested === requested ? state : NOTHING;
-  const replays = shas.flatMap((sha) => loaded.get(sha) ?? []);
-  return { replays: replays.length === shas.length ? replays : null, note, error };
+  // The cache may drop a large replay before another one is there.
+  const loaded = useMemo(() => new Map<string, Replay>(), [requested]);
+  const load = async (sha: string) => {
+    const bytes = loaded.has(sha) || cache.has(sha) ? null : await api.readReplay(sha);
+    const replay = loaded.get(sha) ?? cache.get(sha) ?? (bytes && decodeReplay(bytes));
+    if (!replay) return null;
+    setNewest(cache, sha, replay);
+    loaded.set(sha, replay);
+    return replay;
+  };
+  const ask = async () => {
+    const replays = (await Promise.all(shas.map(load))).filter((replay) => replay !== null);
+    return replays.length === shas.length ? { requested, replays } : null;
+  };
+  const { value, note, error } = usePolled(ask, [requested]);
+  return { replays: value?.requested === requested ? value.replays : null, note, error };
 }
-
-const decoded = (bytes: ArrayBuffer | null) => bytes && decodeReplay(bytes);
 
 interface StatusProps extends Rendered {
   what: string;

@@ -2,7 +2,7 @@
 
 import { type Replay, solidColumns } from "../decode/replay";
 import { type Size, type Theme, prepare } from "../ui/canvas";
-import type { FluidPainter } from "./fluid";
+import type { FluidPainter } from "./fields";
 import { type Point, BODY_INK, bodiesOf, meanOf, positionsAt, splineOf } from "./motion";
 import { type Particles, drawTracers } from "./tracers";
 

@@ -9,7 +9,6 @@ export const text = {
   legend: (title: string, low: unknown, high: unknown, unit: string) =>
     `${title} from ${low} to ${high} ${unit}`,
   player: "Replay player",
-  loop: "The creature swims; colours show the vorticity of the fluid",
   frameBack: "Previous frame",
   pause: "Pause",
   play: "Play",

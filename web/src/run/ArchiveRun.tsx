@@ -3,6 +3,7 @@
 import type { Run } from "../api/types";
 import type { Detail } from "../store/detail";
 import { useChoices } from "../store/choices";
+import { nameOf } from "../store/figureNames";
 import { lazy } from "../ui/lazy";
 import { ArchiveCard } from "../archive/ArchiveCard";
 import { CurvesCard, SearchCard, useComparedRuns } from "./RunCurves";
@@ -40,7 +41,7 @@ export function ArchiveRun({ run, detail, query }: Props) {
       {chosen && (
         <ChoicesCard
           {...{ run, choices: chosen }}
-          children={curves?.summary["chosen: children"]?.at(-1) ?? null}
+          children={curves?.summary[nameOf("emitter.*.children", "chosen")]?.at(-1) ?? null}
         />
       )}
       {curves && <SearchCard {...{ run, curves, query, compared }} />}

@@ -7,8 +7,10 @@ import { useKnownChoices } from "../store/choices";
 import { hasArchive } from "../store/fetch";
 import { FileLink } from "../ui/links";
 import { Card } from "../ui/Page";
-import { ExportMenu } from "./exports/ExportMenu";
 import { text } from "./text";
+import { useState } from "preact/hooks";
+import { lazy } from "../ui/lazy";
+import "./exports/exports.css";
 
 export function FilesCard({ run, about }: { run: Run; about: string }) {
   const chosen = useKnownChoices(run.id)?.items.some(({ generation }) => generation !== null);
@@ -25,5 +27,18 @@ export function FilesCard({ run, about }: { run: Run; about: string }) {
       </div>
       <p class="quiet">{about}</p>
     </Card>
+  );
+}
+
+const ExportFormats = lazy(async () => (await import("./exports/ExportFormats")).ExportFormats, "section");
+
+/** The button below which the formats of exports open. */
+function ExportMenu({ run }: { run: Run }) {
+  const [opened, setOpened] = useState(false);
+  return (
+    <details class="exports" onToggle={() => setOpened(true)}>
+      <summary class="button">{text.export}</summary>
+      {opened && <ExportFormats run={run} />}
+    </details>
   );
 }

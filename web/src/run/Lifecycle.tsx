@@ -4,8 +4,9 @@ import type { Run } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { extend, remove, restore } from "../store/commands";
 import { dateTime, shortId } from "../ui/format";
+import { endOf } from "../store/figureNames";
 import { useDisclosure } from "../ui/forms";
-import { InlineForm } from "./InlineForm";
+import { InlineForm } from "./RunPicker";
 import { text } from "./text";
 
 const ENDED = ["finished", "failed", "cancelled", "paused"];
@@ -23,7 +24,8 @@ export function LifecycleButtons({ run, title }: { run: Run; title: string }) {
 }
 
 /** A run that met a stopping condition cannot be extended. */
-const extendable = (run: Run) => run.status === "finished" && "search" in run.spec && !run.summary?.["ended"];
+const extendable = (run: Run) =>
+  run.status === "finished" && "search" in run.spec && endOf(run.summary) === null;
 
 function Extend({ run }: { run: Run }) {
   const { open, setOpen, button, first: field } = useDisclosure<HTMLInputElement>();

@@ -69,12 +69,14 @@ export function atLeast(entries: readonly LogEntry[], level: Level): LogEntry[] 
 /** Entries as lines of text, oldest first. */
 export function textOf(entries: readonly LogEntry[]): string {
   return entries
-    .map(({ at, level, attempt, text }) => `${at} ${level} [attempt ${attempt}] ${text}`)
+    .map(({ at, level, attempt, text, details }) => {
+      const line = `${at} ${level} [attempt ${attempt}] ${text}`;
+      return details ? `${line}\n${details}` : line;
+    })
     .join("\n");
 }
 
-function Line({ at, level, attempt, text: message }: LogEntry) {
-  const [first, ...more] = summaryOf(message);
+function Line({ at, level, attempt, text: message, details }: LogEntry) {
   return (
     <li class={`log-${level}`}>
       <time class="quiet" dateTime={at} title={dateTime(at)}>
@@ -83,23 +85,15 @@ function Line({ at, level, attempt, text: message }: LogEntry) {
       <span class="quiet log-attempt">{attempt > 0 ? text.attempt(attempt) : ""}</span>
       <div class="log-text">
         {level !== "info" && <b>{level === "error" ? text.error : text.warning}: </b>}
-        {more.length === 0 ? (
-          first
-        ) : (
+        {details ? (
           <details>
-            <summary>{first}</summary>
-            <pre>{more.join("\n")}</pre>
+            <summary>{message}</summary>
+            <pre>{details}</pre>
           </details>
+        ) : (
+          message
         )}
       </div>
     </li>
   );
-}
-
-/** The last line of a traceback as its summary, then all lines. */
-export function summaryOf(message: string): [string, ...string[]] {
-  const lines = message.trim().split("\n");
-  if (lines.length === 1) return [lines[0]!];
-  const [begin] = lines[0]!.split(":");
-  return [`${begin}: ${lines.at(-1)}`, ...lines];
 }

@@ -22,7 +22,7 @@ import { SchedulingCard } from "./SchedulingCard";
 import { PublishButton } from "../publish/PublishButton";
 import { SpecCard } from "./spec/SpecCard";
 import { text } from "./text";
-import { Term } from "../ui/Term";
+import { Facts } from "../ui/Facts";
 import "./run.css";
 
 const FilesCard = lazy(async () => (await import("./FilesCard")).FilesCard, "section");
@@ -158,10 +158,11 @@ function Banners({ run }: { run: Run }) {
           {run.warning}
         </p>
       )}
-      {run.error && (
+      {run.error && !run.error_details && <p class="banner wrong">{run.error}</p>}
+      {run.error && run.error_details && (
         <details class="banner wrong" open={run.status === "failed"}>
-          <summary>{run.error.trim().split("\n").at(-1)}</summary>
-          <pre>{run.error}</pre>
+          <summary>{run.error}</summary>
+          <pre>{run.error_details}</pre>
         </details>
       )}
     </>
@@ -188,16 +189,7 @@ function RunFacts({ run, title }: { run: Run; title: string }) {
         <strong class="run-stuck" aria-hidden="true">
           {title}
         </strong>
-        <dl class="facts">
-          {facts.map(([name, value]) => (
-            <div key={name}>
-              <dt>
-                <Term name={name} />
-              </dt>
-              <dd>{value}</dd>
-            </div>
-          ))}
-        </dl>
+        <Facts of={facts} />
         <SectionLinks run={run} />
       </div>
     </section>

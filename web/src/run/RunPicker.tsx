@@ -1,12 +1,12 @@
-/** A button that opens a choice of another run. */
+/** A button that opens a choice of another run, and the short form in place of such a button. */
 
 import { useEffect, useRef } from "preact/hooks";
 import type { Run } from "../api/types";
 import { useExperiments, useRunChoices } from "../store/fetch";
 import { dateTime, shortId, titleOf } from "../ui/format";
-import { useDisclosure } from "../ui/forms";
-import { InlineForm } from "./InlineForm";
+import { useDisclosure, composes } from "../ui/forms";
 import { text } from "./text";
+import type { ComponentChildren, RefObject } from "preact";
 
 interface Props {
   run: Run;
@@ -61,5 +61,30 @@ function RunSelect({ run, label, fits, onSelect, onClose }: Props & { onClose: (
         </>
       )}
     </InlineForm>
+  );
+}
+
+interface InlineFormProps {
+  onSubmit: () => void;
+  onClose: () => void;
+  closeButton?: RefObject<HTMLButtonElement | null>;
+  children: ComponentChildren;
+}
+
+export function InlineForm({ onSubmit, onClose, closeButton, children }: InlineFormProps) {
+  return (
+    <form
+      class="run-choice row small"
+      onSubmit={(event) => {
+        event.preventDefault();
+        onSubmit();
+      }}
+      onKeyDown={(event) => event.key === "Escape" && !composes(event) && onClose()}
+    >
+      {children}
+      <button ref={closeButton} type="button" class="slim" onClick={onClose}>
+        {text.close}
+      </button>
+    </form>
   );
 }

@@ -53,7 +53,11 @@ export function CommandButtons({ run, title, name }: CommandProps) {
           {text[command]}
         </button>
       )}
-      <button class="danger" onClick={() => cancelWithUndo(id, title)} aria-label={`${text.cancel} ${name}`}>
+      <button
+        class="danger"
+        onClick={() => void cancelWithUndo(id, title)}
+        aria-label={`${text.cancel} ${name}`}
+      >
         {text.cancel}
       </button>
     </span>
@@ -63,9 +67,7 @@ export function CommandButtons({ run, title, name }: CommandProps) {
 export function activityOf(run: Run): string | null {
   if (run.status === "queued") return run.waiting_reason ?? text.waitingForWorker;
   if (run.status !== "running" || run.generation > 0) return null;
-  const device = run.device?.toLowerCase() ?? "";
-  if (!run.device) return text.preparing;
-  return device.includes("cpu") ? text.compilingCpu : text.compiling;
+  return run.device ? text.compiling : text.preparing;
 }
 
 /** The time since the run started, or since it was last queued. */

@@ -1,5 +1,6 @@
-/** Which workers may carry out a run, and when; editable until it has ended. */
+/** The scheduling of a run: its workers and its priority; editable until it has ended. */
 
+import { useState } from "preact/hooks";
 import type { Run } from "../api/types";
 import { editRun } from "../store/commands";
 import { useRefusal } from "../store/principal";
@@ -45,23 +46,27 @@ export function SchedulingCard({ run }: { run: Run }) {
 }
 
 function Labels({ run }: { run: Run }) {
+  // Kept while it is typed: events draw the card again.
+  const [typed, setTyped] = useState<string | null>(null);
   return (
     <label class="compact">
       {text.labels}
       <input
-        value={run.labels.join(", ")}
+        value={typed ?? run.labels.join(", ")}
         placeholder={text.labelsHint}
         autocomplete="off"
+        onInput={({ currentTarget }) => setTyped(currentTarget.value)}
         onChange={({ currentTarget }) => void editRun(run.id, { labels: labelsIn(currentTarget.value) })}
+        onBlur={() => setTyped(null)}
       />
     </label>
   );
 }
 
-export const labelsIn = (words: string) => [...new Set(words.split(/[\s,]+/))].filter((word) => word !== "");
+const labelsIn = (words: string) => [...new Set(words.split(/[\s,]+/))].filter((word) => word !== "");
 
 /** The usual choices, with the present one among them. */
-export function patienceChoices(present: number | null): [string, string][] {
+function patienceChoices(present: number | null): [string, string][] {
   const seconds = present === null || PATIENCE.includes(present) ? PATIENCE : [...PATIENCE, present];
   const title = (one: number) => (one ? text.patience.after(duration(one)) : text.patience.now);
   return [

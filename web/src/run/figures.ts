@@ -2,6 +2,7 @@
 
 import type { Run, Json, Spec } from "../api/types";
 import { DASH, bytes, count, number, percent } from "../ui/format";
+import { endOf } from "../store/figureNames";
 import { text } from "./text";
 
 export type Figure = [name: string, value: string];
@@ -67,7 +68,7 @@ export function figuresOf(run: Run): Figure[] {
   }
 }
 
-/** How far the motions of the elites are from each other; known at the end of a search. */
+/** The distance between the motions of the elites; known at the end of a search. */
 function varietyOf(run: Run): Figure[] {
   const distance = summaryOf(run, "motion_distance");
   if (distance === null) return [];
@@ -98,15 +99,21 @@ const LIMITS: Record<string, (limit: number) => string> = {
   fitness: (limit) => text.fitnessReached(number(limit)),
 };
 
-/** A sentence from `summary.ended`, such as `evaluations after generation 12`. */
-export function endReasonOf({ summary, spec, generations }: Run): string {
-  const ended = typeof summary?.ended === "string" ? summary.ended : "";
-  const [, name, generation] = /^(\w+) after generation (\d+)$/.exec(ended) ?? [];
-  const limit = name === undefined ? null : limitOf(spec, name);
-  const reason = limit === null ? undefined : LIMITS[name!]?.(limit);
-  if (reason) return text.endedAfter(count(Number(generation)), reason);
-  if (ended) return text.endedEarly(ended.replaceAll("_", " "));
-  return generations === 1 ? text.completedOne : text.completed(count(generations));
+/** A sentence on why a search ended, with the limit of its spec. */
+export function endReasonOf(run: Run): string {
+  const reason = reasonOf(run);
+  // A best fitness of 0 would read as a creature that lies still.
+  if (run.coverage !== 0) return reason;
+  return `${reason} ${text.noElite(count(run.infeasible), count(run.evaluations))}`;
+}
+
+function reasonOf({ summary, spec, generations }: Run): string {
+  const end = endOf(summary);
+  if (end === null) return generations === 1 ? text.completedOne : text.completed(count(generations));
+  const [name, generation] = end;
+  const limit = limitOf(spec, name);
+  const reason = limit === null ? undefined : LIMITS[name]?.(limit);
+  return text.endedAfter(count(generation), reason ?? text.limitMet(name.replaceAll("_", " ")));
 }
 
 function limitOf(spec: Spec, name: string): number | null {

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { LogEntry, Run } from "../api/types";
 import { endReasonOf, figuresOf, keyFigureOf } from "./figures";
 import { activityOf, elapsedOf } from "./RunStatus";
-import { atLeast, summaryOf, textOf } from "./LogCard";
+import { atLeast, textOf } from "./LogCard";
 
 describe("a log", () => {
   const entry = (id: number, level: LogEntry["level"], text: string): LogEntry => ({
@@ -11,6 +11,7 @@ describe("a log", () => {
     level,
     attempt: 1,
     text,
+    details: null,
   });
   const entries = [entry(1, "info", "Begins."), entry(2, "warning", "Full."), entry(3, "error", "Ended.")];
 
@@ -26,11 +27,9 @@ describe("a log", () => {
     );
   });
 
-  it("summarises a traceback by its last line", () => {
-    const text = "Attempt 1 failed: Traceback:\n  File x\nValueError: no";
-    expect(summaryOf(text)[0]).toBe("Attempt 1 failed: ValueError: no");
-    expect(summaryOf(text).slice(1)).toEqual(text.split("\n"));
-    expect(summaryOf("Finished.")).toEqual(["Finished."]);
+  it("is copied with the traceback of an error", () => {
+    const failed = { ...entries[2]!, details: "Traceback:\n  File x" };
+    expect(textOf([failed])).toMatch(/Ended\.\nTraceback:\n  File x$/);
   });
 });
 
@@ -45,7 +44,7 @@ describe("the activity of a run without figures", () => {
 
   it("is shown with its duration", () => {
     expect(activityOf(run)).toContain("up to a minute on a CPU");
-    expect(activityOf({ ...run, device: "gpu, fast" })).not.toContain("CPU");
+    expect(activityOf({ ...run, device: null })).toContain("preparing");
     expect(activityOf({ ...run, generation: 1 })).toBeNull();
     expect(activityOf({ ...run, status: "finished" })).toBeNull();
     const queued = { ...run, status: "queued", queued_at: "2026-01-01T00:01:30Z" } as Run;
@@ -60,13 +59,26 @@ describe("the reason why a run ended", () => {
   const run = { generations: 50, spec: { search: { stop: { evaluations: 5000 } } } } as unknown as Run;
   it.each([
     [null, "Completed all 50 generations."],
-    [
-      "evaluations after generation 12",
-      "Ended after generation 12: it used its budget of 5,000 evaluations.",
-    ],
-    ["device_hours after generation 3", "Ended early: device hours after generation 3."],
-  ])("%j becomes %j", (ended, sentence) => {
-    expect(endReasonOf({ ...run, summary: ended ? { ended } : null })).toBe(sentence);
+    [{ "ended.evaluations": 12 }, "Ended after generation 12: it used its budget of 5,000 evaluations."],
+    [{ "ended.device_hours": 3 }, "Ended after generation 3: it met its limit of device hours."],
+  ])("%j becomes %j", (summary, sentence) => {
+    expect(endReasonOf({ ...run, summary })).toBe(sentence);
+  });
+});
+
+describe("a search without an elite", () => {
+  it("says so at its end, and has no best fitness", () => {
+    const scores = { qd_score: 0, coverage: 0, best: null, infeasible: 16, evaluations: 16 };
+    const run = {
+      experiment: "quality-diversity",
+      generations: 2,
+      summary: null,
+      ...scores,
+    } as unknown as Run;
+    expect(endReasonOf(run)).toBe(
+      "Completed all 2 generations. No elite: 16 of 16 evaluations were infeasible.",
+    );
+    expect(Object.fromEntries(figuresOf(run))).toMatchObject({ "Best fitness": "–" });
   });
 });
 

@@ -38,8 +38,8 @@ export const text = {
   warning: "Warning",
   waitingForWorker: "Waiting for a free worker.",
   preparing: "A worker is preparing the run.",
-  compilingCpu: "Compiling and computing the first generation. This takes up to a minute on a CPU.",
-  compiling: "Compiling and computing the first generation. This can take half a minute.",
+  compiling:
+    "Compiling and computing the first generation. This takes up to a minute on a CPU, half as long on a GPU.",
   elapsed: (queued: boolean, duration: string) => `${queued ? "Waiting" : "Running"} for ${duration}.`,
   showWorkers: "Show workers",
   curves: "Curves",
@@ -58,7 +58,6 @@ export const text = {
   renameRun: (title: string) => `Rename ${title}`,
   rename: "Rename",
   noSuchRun: "Run not found",
-  runs: "Runs",
   sweep: "Sweep",
   tree: "Tree of life",
   treeAbout: "Show all creatures that ever entered the archive, with their parents",
@@ -92,7 +91,7 @@ export const text = {
   labelsHint: "a100, room=2",
   otherDevice: "Another kind of device",
   otherDeviceHint:
-    "On another kind of device the same run has other bits. Its archive says where it changed.",
+    "Results differ in rounding on another kind of device. The archive says where the kind changed.",
   patience: {
     never: "never continues it",
     now: "may continue it now",
@@ -109,8 +108,10 @@ export const text = {
   budgetHours: (limit: string) => `it used its budget of ${limit} device-hours`,
   fitnessReached: (limit: string) => `a creature reached the fitness ${limit}`,
   endedAfter: (generation: string, reason: string) => `Ended after generation ${generation}: ${reason}.`,
-  endedEarly: (reason: string) => `Ended early: ${reason}.`,
+  limitMet: (limit: string) => `it met its limit of ${limit}`,
   completedOne: "Completed its only generation.",
+  noElite: (infeasible: string, evaluations: string) =>
+    `No elite: ${infeasible} of ${evaluations} evaluations were infeasible.`,
   completed: (generations: string) => `Completed all ${generations} generations.`,
   points: "Points",
   withWarnings: "With warnings",

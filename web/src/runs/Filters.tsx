@@ -97,11 +97,11 @@ function Selects({ query, experiments, tags, onChange }: Props) {
   );
 }
 
-export const NEWEST = "-created";
+const NEWEST = "-created";
 
 type Sort = NonNullable<RunQuery["sort"]>;
 
-export const ORDERS = Object.entries(text.orders) as [sort: Sort, title: string][];
+const ORDERS = Object.entries(text.orders) as [sort: Sort, title: string][];
 
 /** The query of an address; unknown values are ignored. */
 export function queryOf(address: URLSearchParams): RunQuery {

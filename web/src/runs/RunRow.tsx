@@ -95,7 +95,7 @@ function RowNotes({ run }: { run: Run }) {
       )}
       {run.purge_at && <span class="row-note gone quiet">{text.purged(dateTime(run.purge_at))}</span>}
       {run.waiting_reason && <span class="row-note reason quiet">{run.waiting_reason}</span>}
-      {run.error && <span class="row-note wrong-text">{lastLine(run.error)}</span>}
+      {run.error && <span class="row-note wrong-text">{run.error}</span>}
       {run.warning && <span class="row-note warning-text">{run.warning}</span>}
     </>
   );
@@ -123,10 +123,6 @@ function RowActions({ run, title, name }: Omit<PartProps, "readOnly">) {
   );
 }
 
-function lastLine(traceback: string): string {
-  return traceback.trim().split("\n").at(-1) ?? "";
-}
-
 interface LabelProps {
   run: Run;
   name: string;
@@ -135,7 +131,7 @@ interface LabelProps {
 
 const MAX_TAGS = 20;
 
-export function TagList({ run, name, readOnly, known }: LabelProps & { known: string }) {
+function TagList({ run, name, readOnly, known }: LabelProps & { known: string }) {
   const { open, setOpen, button } = useDisclosure();
   const done = (tag: string | null) => {
     setOpen(false);
@@ -149,7 +145,7 @@ export function TagList({ run, name, readOnly, known }: LabelProps & { known: st
             {tag}
           </button>
           {!readOnly && (
-            <button aria-label={text.removeTag(tag, name)} onClick={() => removeTag(run, tag)}>
+            <button aria-label={text.removeTag(tag, name)} onClick={() => void removeTag(run, tag)}>
               ✕
             </button>
           )}
@@ -170,13 +166,13 @@ export function TagList({ run, name, readOnly, known }: LabelProps & { known: st
   );
 }
 
-export function NoteField({ run, name, readOnly }: LabelProps) {
+function NoteField({ run, name, readOnly }: LabelProps) {
   const { open, setOpen, button } = useDisclosure();
   const done = (note: string | null) => {
     setOpen(false);
     if (note === null || note === (run.note ?? "")) return;
     if (note) void editRun(run.id, { note });
-    else removeNote(run);
+    else void removeNote(run);
   };
   if (readOnly) return run.note ? <span class="note quiet small">{run.note}</span> : null;
   if (open) {

@@ -1,6 +1,7 @@
 /** The table of runs, in groups if the address asks for them. */
 
 import { Fragment } from "preact";
+import { useEffect, useState } from "preact/hooks";
 import type { Experiment, RunQuery } from "../api/types";
 import { readTankBatch, usePoses } from "../store/poses";
 import { setQuery } from "../store/router";
@@ -23,18 +24,20 @@ interface TableProps {
   onSelect: (id: string) => void;
 }
 
-export function RunTable({ query, address, listed, experiments, selected, onSelect }: TableProps) {
+export function RunTable({ query, address, experiments, selected, onSelect, ...now }: TableProps) {
   const columns = columnsOf(address);
   const grouping = groupingOf(address);
-  const names = useEach(listed, ({ runs }, id) => groupName(runs.get(id), grouping));
+  const namesNow = useEach(now.listed, ({ runs }, id) => groupName(runs.get(id), grouping));
+  const [{ listed, names }, follow] = useStill({ listed: now.listed, names: namesNow });
   const groups = groupedBy(names);
   const faces = useEach(listed, ({ runs }, id) => runs.get(id)?.face ?? null);
   const poses = usePoses(
     readTankBatch,
     faces.filter((face) => face !== null).map((creature) => ({ creature })),
   );
+  if (listed.length === 0) return null;
   return (
-    <table class="runs">
+    <table class="runs" {...follow}>
       <Head query={query} columns={columns} />
       <tbody>
         {groups.map(([name, places]) => (
@@ -57,6 +60,18 @@ export function RunTable({ query, address, listed, experiments, selected, onSele
       </tbody>
     </table>
   );
+}
+
+/** The rows as they were when a text field was opened in one: a row that moved or left would end it. */
+function useStill<T>(rows: T) {
+  const [still, setStill] = useState<T | null>(null);
+  const follow = ({ type, target }: FocusEvent) =>
+    setStill(type === "focusin" && (target as Element).matches(".inline-text") ? rows : null);
+  // Some browsers tell of no lost focus when the field itself is removed.
+  useEffect(() => {
+    if (still && !document.activeElement?.matches(".inline-text")) setStill(null);
+  });
+  return [still ?? rows, { onFocusIn: follow, onFocusOut: follow }] as const;
 }
 
 function Head({ query, columns }: { query: RunQuery; columns: readonly RunColumn[] }) {

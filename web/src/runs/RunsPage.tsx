@@ -2,7 +2,7 @@
 
 import { useState } from "preact/hooks";
 import { MAX_RUNS } from "../charts/lineStyle";
-import type { RunQuery } from "../api/types";
+import type { RunQuery, SweepPage } from "../api/types";
 import { useRefusal } from "../store/principal";
 import { useExperiments } from "../store/fetch";
 import { loadMoreRuns, useRunList, useTags } from "../store/runList";
@@ -15,10 +15,11 @@ import { Tank } from "../tank/Tank";
 import { Empty, Page } from "../ui/Page";
 import { Filters, NO_FILTERS, WITHOUT_SWEEP, groupsSweeps, isFiltered, queryOf } from "./Filters";
 import { RunTable, TAGS_ID } from "./RunTable";
-import { SweepRows } from "./SweepRows";
 import { TableOptions } from "./TableOptions";
 import { text } from "./text";
 import "./runs.css";
+import { dateTime } from "../ui/format";
+import { SweepProgress, SweepStates, sizeText, sweepTitle } from "../sweeps/SweepStatus";
 
 /** Number of sweeps above the list, at first and after “Show more”. */
 const FIRST_SWEEPS = 5;
@@ -62,9 +63,7 @@ export function RunsPage({ query: address }: { query: URLSearchParams }) {
         {hasSweeps && (
           <SweepRows page={sweeps!} onMore={maxSweeps < MAX_SWEEPS ? () => setMaxSweeps(MAX_SWEEPS) : null} />
         )}
-        {listed.length > 0 && (
-          <RunTable {...{ query, address, listed, experiments, selected }} onSelect={choose} />
-        )}
+        <RunTable {...{ query, address, listed, experiments, selected }} onSelect={choose} />
         <KnownTags tags={tags} />
         {next && <LoadMore query={listedQuery} />}
       </Page>
@@ -181,5 +180,41 @@ function LoadMore({ query }: { query: RunQuery }) {
         {busy ? text.loading : text.loadMore}
       </button>
     </p>
+  );
+}
+
+interface Props {
+  page: SweepPage;
+  /** Null if all are shown. */
+  onMore: (() => void) | null;
+}
+
+/** Sweeps above the list of runs, one row for each. */
+function SweepRows({ page, onMore }: Props) {
+  return (
+    <section class="sweep-rows" aria-label={text.sweeps}>
+      <ul>
+        {page.items.map((sweep) => (
+          <li key={sweep.id} class="card sweep-row">
+            <span class="sweep-name">
+              <a class="run-name" href={`/sweeps/${sweep.id}`}>
+                {sweepTitle(sweep)}
+              </a>
+              <span class="quiet small">
+                {sizeText(sweep)} · {dateTime(sweep.created_at)}
+              </span>
+            </span>
+            <span class="sweep-status">
+              <SweepProgress sweep={sweep} />
+              <SweepStates sweep={sweep} />
+            </span>
+            <a class="button" href={`/?sweep=${sweep.id}`} aria-label={text.runsOfSweep(sweepTitle(sweep))}>
+              {text.runs}
+            </a>
+          </li>
+        ))}
+      </ul>
+      {page.next && onMore && <button onClick={onMore}>{text.moreSweeps}</button>}
+    </section>
   );
 }

@@ -1,11 +1,11 @@
 /** Choices of the list of runs: columns, groups, and views that are kept under a name. */
 
-import { useRef } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
+import { changeKept, readKept } from "../store/kept";
+import { useListener } from "../store/polling";
 import { navigate, setQuery } from "../store/router";
-import { Dropdown } from "../ui/Dropdown";
-import { Check, Select } from "../ui/Select";
+import { Dropdown, Check, Select } from "../ui/Select";
 import { COLUMNS, GROUPINGS, columnsOf, columnsParameter, groupingOf } from "./columns";
-import { MAX_NAME, useViews } from "./views";
 import { text } from "./text";
 
 export function TableOptions({ address }: { address: URLSearchParams }) {
@@ -38,7 +38,7 @@ export function TableOptions({ address }: { address: URLSearchParams }) {
 function Views() {
   const { views, save, remove } = useViews();
   const name = useRef<HTMLInputElement>(null);
-  const keep = (event: Event) => {
+  const keepView = (event: Event) => {
     event.preventDefault();
     const given = name.current!.value.trim();
     if (given) save({ name: given, query: location.search });
@@ -63,7 +63,7 @@ function Views() {
           </li>
         ))}
       </ul>
-      <form class="row" onSubmit={keep}>
+      <form class="row" onSubmit={keepView}>
         <input
           ref={name}
           aria-label={text.viewName}
@@ -75,4 +75,39 @@ function Views() {
       </form>
     </Dropdown>
   );
+}
+
+interface View {
+  name: string;
+  /** The query of the address. */
+  query: string;
+}
+
+const STORAGE_KEY = "microcosmos:views";
+const MAX_NAME = 60;
+
+/** The views in a kept value; none if it is no list of views. */
+export function viewsIn(kept: unknown): View[] {
+  return Array.isArray(kept) ? kept.filter(isView) : [];
+}
+
+function isView(value: unknown): value is View {
+  const { name, query } = (value ?? {}) as Partial<View>;
+  return typeof name === "string" && typeof query === "string";
+}
+
+/** The views with another one, which replaces one of the same name. */
+export const withView = (views: readonly View[], view: View): View[] =>
+  [...views.filter(({ name }) => name !== view.name), view].sort((a, b) => a.name.localeCompare(b.name));
+
+function useViews() {
+  const [kept, setKept] = useState(() => readKept<unknown>(STORAGE_KEY, []));
+  const change = (how: (now: View[]) => View[]) =>
+    setKept(changeKept(STORAGE_KEY, kept, (now) => how(viewsIn(now))));
+  useListener("storage", () => setKept(readKept(STORAGE_KEY, kept))); // Another tab has changed them.
+  return {
+    views: viewsIn(kept),
+    save: (view: View) => change((now) => withView(now, view)),
+    remove: (name: string) => change((now) => now.filter((view) => view.name !== name)),
+  };
 }

@@ -2,7 +2,6 @@
 
 import type { ComponentChildren } from "preact";
 import type { Run } from "../api/types";
-import { Sparkline } from "../charts/Sparkline";
 import { keyFigureOf } from "../run/figures";
 import { RunProgress, StatusBadge, timeOf } from "../run/RunStatus";
 import { DASH, count, dateTime, number, percent } from "../ui/format";
@@ -149,4 +148,25 @@ export function groupedBy(names: readonly string[]): [name: string, places: numb
   const groups = new Map<string, number[]>();
   names.forEach((name, place) => groups.set(name, [...(groups.get(name) ?? []), place]));
   return [...groups];
+}
+
+const [WIDTH, HEIGHT, MARGIN] = [96, 24, 2];
+
+/** A run's QD score in a line of text's height. */
+function Sparkline({ values, label }: { values: number[]; label: string }) {
+  if (values.length < 2) return <span class="quiet">–</span>;
+  const low = Math.min(...values);
+  const span = Math.max(...values) - low || 1;
+  const points = values.map((value, i) => {
+    const x = MARGIN + ((WIDTH - 2 * MARGIN) * i) / (values.length - 1);
+    const y = HEIGHT - MARGIN - ((HEIGHT - 2 * MARGIN) * (value - low)) / span;
+    return `${x.toFixed(1)},${y.toFixed(1)}`;
+  });
+  const [x, y] = points.at(-1)!.split(",");
+  return (
+    <svg class="sparkline" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={label}>
+      <polyline points={points.join(" ")} />
+      <circle cx={x} cy={y} r="2" />
+    </svg>
+  );
 }

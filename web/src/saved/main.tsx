@@ -1,4 +1,4 @@
-/** A creature in one HTML file, which needs no server and no network. */
+/** A creature, or a motion alone, in one HTML file, which needs no server and no network. */
 
 import { render } from "preact";
 import "../ui/base.css";
@@ -8,8 +8,8 @@ import "../replay/replay.css";
 import "../creature/creature.css";
 import "../creature/details.css";
 import "./saved.css";
+import { decodeMotion } from "../decode/motion";
 import { DATA, unpacked } from "../offline/packing";
-import { unpackMotion } from "../offline/motion";
 import type { About } from "../offline/page";
 import { SavedPage } from "./SavedPage";
 
@@ -18,6 +18,6 @@ const about: About = JSON.parse(read(DATA.about));
 
 void unpacked(read(DATA.motion)).then((motion) => {
   const readInputs = () => unpacked(read(DATA.evaluation));
-  const replay = unpackMotion(motion);
+  const replay = decodeMotion(motion);
   render(<SavedPage {...{ about, replay, readInputs }} />, document.getElementById("app")!);
 });

@@ -3,6 +3,7 @@
 import { readPrincipal, signOut, signIn } from "../api/client";
 import type { Principal } from "../api/types";
 import { useFetched } from "../store/fetch";
+import { useListener } from "../store/polling";
 import { showFailure } from "../store/toasts";
 import { Card, Page } from "../ui/Page";
 import { Tokens, day } from "./Tokens";
@@ -59,6 +60,15 @@ export function SignInPage() {
     await signIn(token.trim());
     location.reload();
   });
+  // Another tab may have signed in.
+  useListener(
+    "focus",
+    () =>
+      void readPrincipal().then(
+        () => location.reload(),
+        () => {},
+      ),
+  );
   return (
     <main>
       <form class="card sign-in" onSubmit={onSubmit}>

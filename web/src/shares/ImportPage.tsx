@@ -1,18 +1,18 @@
-/** Import a shared creature of another installation, after its hash is verified in this browser. */
+/** Import a shared creature of another installation, or all of an archive, after their hashes are verified here. */
 
 import { importCreature } from "../api/client";
-import { type ForeignCreature, readForeignCreature } from "../api/foreign";
-import { foreignFileUrl, foreignNamesUrl } from "../api/shareAddress";
+import { type ForeignCreature, readForeignCreature, foreignFileOf, readForeignNames } from "../api/foreign";
+import { foreignFileUrl, foreignNamesUrl } from "../api/address";
 import { useFetched } from "../store/fetch";
 import { useRefusal } from "../store/principal";
 import { navigate } from "../store/router";
-import { useSubmit } from "../ui/forms";
+import { Facts } from "../ui/Facts";
+import { useSubmit, useLeaving } from "../ui/forms";
 import { number, shortId } from "../ui/format";
-import { Card, Loading, Page } from "../ui/Page";
-import { Fact } from "./Fact";
-import { ImportAll } from "./ImportAll";
+import { Card, Loading, Page, Progress } from "../ui/Page";
 import { text } from "./text";
 import "./shares.css";
+import { useState } from "preact/hooks";
 
 export function ImportPage({ query }: { query: URLSearchParams }) {
   const address = query.get("share") ?? "";
@@ -72,16 +72,17 @@ function Verified({ creature, ancestors, file, host }: ForeignCreature & { host:
       title={[text.creature, " ", <code>{shortId(sha256)}</code>]}
       note={<span class="badge finished">{text.hashVerified}</span>}
     >
-      <dl class="facts terms">
-        <Fact name={text.from}>{host}</Fact>
-        {credit.length > 0 && <Fact name={text.credit}>{credit.join(", ")}</Fact>}
-        <Fact name={text.licence}>{licence}</Fact>
-        {measured && <Fact name={text.fitness}>{number(measured.fitness, 4)}</Fact>}
-        <Fact name={text.ancestors}>{ancestors.length}</Fact>
-        <Fact name="SHA-256">
-          <code>{sha256}</code>
-        </Fact>
-      </dl>
+      <Facts
+        kind="facts terms"
+        of={[
+          [text.from, host],
+          credit.length > 0 && [text.credit, credit.join(", ")],
+          [text.licence, licence],
+          measured && [text.fitness, number(measured.fitness, 4)],
+          [text.ancestors, ancestors.length],
+          ["SHA-256", <code>{sha256}</code>],
+        ]}
+      />
       <form onSubmit={onSubmit}>
         <button class="primary" disabled={busy || refusal !== null}>
           {busy ? text.importing : text.import}
@@ -92,3 +93,52 @@ function Verified({ creature, ancestors, file, host }: ForeignCreature & { host:
     </Card>
   );
 }
+
+/** `url`: the address of the names. Nothing is shown for a share of one creature. */
+function ImportAll({ url }: { url: string }) {
+  const refusal = useRefusal();
+  const { value: names } = useFetched(() => readForeignNames(url), [url]);
+  const [done, setDone] = useState(0);
+  const leaving = useLeaving();
+  const { busy, error, onSubmit } = useSubmit(async () => {
+    // Creatures that were imported before an error stay.
+    for (let k = done; k < names!.length && !leaving.aborted; k++) {
+      const { file } = await readForeignCreature(foreignFileOf(url, names![k]!));
+      await importCreature(file);
+      setDone(k + 1);
+    }
+  });
+  if (!names || names.length < 2) return null;
+  const complete = done === names.length;
+  return (
+    <Card id="incoming-all" title={text.importAllTitle(names.length)}>
+      {done > 0 && <Progress label={text.importProgress} share={done / names.length} kind="running" />}
+      <p class="small" role="status">
+        {complete ? text.importedAll(names.length) : done > 0 && text.importedSome(done, names.length)}
+      </p>
+      {complete && <Links names={names} />}
+      {!complete && (
+        <form onSubmit={onSubmit}>
+          <button disabled={busy || refusal !== null}>{busy ? text.importing : text.importAll}</button>{" "}
+          <span class="quiet small">{refusal ?? text.importAllAbout}</span>
+        </form>
+      )}
+      {error && <p class="banner wrong">{error}</p>}
+    </Card>
+  );
+}
+
+/** The best ones: nobody reads hundreds. */
+const SHOWN = 12;
+
+const Links = ({ names }: { names: string[] }) => (
+  <p class="small">
+    {names.slice(0, SHOWN).map((name) => (
+      <span key={name}>
+        <a href={`/creatures/${name}`}>
+          <code>{shortId(name)}</code>
+        </a>{" "}
+      </span>
+    ))}
+  </p>
+);

@@ -10,8 +10,9 @@ import { Loading, NotFound, Page, useTitle, Empty } from "../ui/Page";
 import { lazy } from "../ui/lazy";
 import { TrustBadge } from "../ui/TrustBadge";
 import { isLoopback } from "../publish/Unreachable";
-import { Fact } from "./Fact";
+import { Facts } from "../ui/Facts";
 import { TakeAway } from "./TakeAway";
+import { factsOf } from "../publish/fields";
 import { text } from "./text";
 import { decodePoses } from "../decode/poses";
 import { usePages } from "../store/paging";
@@ -74,23 +75,25 @@ export function headingOf({ run, title }: Share, creature: string | null, inside
   return [heading, id && heading.includes(id) ? null : id] as const;
 }
 
-function Terms({ share: { credit, licence, expires_at, created_at } }: { share: Share }) {
+function Terms({ share }: { share: Share }) {
+  const { credit, licence, expires_at, created_at } = share;
   const url = LICENCE_URLS[licence];
+  const terms = url && (
+    <a href={url} target="_blank" rel="noreferrer license">
+      {licence}
+    </a>
+  );
   return (
-    <dl class="facts terms">
-      {credit.length > 0 && <Fact name={text.credit}>{credit.join(", ")}</Fact>}
-      <Fact name={text.licence}>
-        {url ? (
-          <a href={url} target="_blank" rel="noreferrer license">
-            {licence}
-          </a>
-        ) : (
-          licence
-        )}
-      </Fact>
-      <Fact name={text.shared}>{dateTime(created_at)}</Fact>
-      {expires_at && <Fact name={text.until}>{dateTime(expires_at)}</Fact>}
-    </dl>
+    <Facts
+      kind="facts terms"
+      of={[
+        credit.length > 0 && [text.credit, credit.join(", ")],
+        ...factsOf(share),
+        [text.licence, terms ?? licence],
+        [text.shared, dateTime(created_at)],
+        expires_at ? [text.until, dateTime(expires_at)] : null,
+      ]}
+    />
   );
 }
 

@@ -3,10 +3,10 @@
 import { describe, expect, it } from "vitest";
 import { isPublicPage } from "../api/address";
 import type { Share } from "../api/types";
-import { requestOf } from "../publish/PublishDialog";
+import { licencesFor, requestOf } from "../publish/PublishDialog";
 import { routeOf } from "../store/router";
-import { bibtex, citation } from "./citation";
-import { embedCode } from "./embedding";
+import { bibtex, citation } from "./TakeAway";
+import { embedCode } from "./TakeAway";
 import { headingOf } from "./SharedPage";
 
 const form = (fields: Record<string, string>) => {
@@ -19,9 +19,9 @@ describe("the request of a form", () => {
   const plain = { title: " ", credit: "", licence: "CC0-1.0", term: "never" };
 
   it("leaves empty fields to the server", () => {
-    expect(requestOf(form(plain))).toEqual({
+    expect(requestOf(form({ ...plain, licence: "" }))).toEqual({
       credit: [],
-      licence: "CC0-1.0",
+      licence: null,
       expires_at: null,
       listed: false,
     });
@@ -40,6 +40,20 @@ describe("the request of a form", () => {
   it("takes a date in local time", () => {
     const request = requestOf(form({ ...plain, term: "date", until: "2026-03-01T12:00" }));
     expect(request.expires_at).toBe(new Date("2026-03-01T12:00").toISOString());
+  });
+});
+
+describe("the licences to choose from", () => {
+  const names = (file?: { licence: string }) => licencesFor(file).map(([name]) => name);
+  const usual = ["CC-BY-4.0", "CC-BY-SA-4.0", "CC-BY-NC-4.0", "CC0-1.0"];
+
+  it("have that of the file, known or not", () => {
+    expect(names({ licence: "CC-BY-NC-4.0" })).toEqual(usual);
+    expect(names({ licence: "MIT" })).toEqual(["MIT", ...usual]);
+  });
+
+  it("begin with the server's choice for an archive, which has no file", () => {
+    expect(names()).toEqual(["", ...usual]);
   });
 });
 

@@ -9,7 +9,7 @@ export const text = {
   creature: "Creature",
   importTitle: "Import a shared creature",
   shareAddress: "Address of the share",
-  look: "Look",
+  look: "Preview",
   noAddress: "The address of a share ends with /s/ and its name, as in https://swim.example.org/s/Ab-_9.",
   unreachable: (host: string) =>
     `${host} cannot be reached, or it is not a Microcosmos whose shares other pages may read.`,

@@ -1,8 +1,6 @@
 /** The evaluation of a creature: develop, simulate and measure it in all its trials. */
 
-import type { EvaluationInputs, Simulation } from "../decode/evaluation";
-import { crossing } from "./crossing";
-import { type Figures, fitnessOf, lastCycle, means, overTrials } from "./figures";
+import type { EvaluationInputs, Goal, Simulation } from "../decode/evaluation";
 import { Kernel } from "./kernel";
 import { simulated } from "./simulation";
 
@@ -30,10 +28,11 @@ export function evaluate(
         progress(++done / total);
         return found;
       }),
+      inputs.largest,
     ),
   );
   return {
-    figures: overTrials(trials),
+    figures: overTrials(trials, inputs.largest),
     steps: total * inputs.numbers.rollout.steps!,
     seconds: (performance.now() - began) / 1000,
   };
@@ -43,18 +42,85 @@ export function evaluate(
 function figuresOf(kernel: Kernel, inputs: EvaluationInputs, one: Simulation): Figures {
   const { observed, summary } = simulated(kernel, inputs, one);
   const found = (name: string) => kernel.read(summary.get(name)!);
-  const crossed = crossing(found("frames"), inputs.arrays[one.whole] as Int32Array, {
-    edges: kernel.readIntegers(observed.get("edges")!),
-    present: kernel.readIntegers(observed.get("present")!),
-  });
+  const whole = kernel.put(inputs.arrays[one.whole]!);
+  const [crossed] = kernel.call("cross", inputs.numbers.rollout, (_, name) =>
+    name === "whole" ? whole : (summary.get(name) ?? observed.get(name)),
+  );
   const values = found("measures");
   const measures = Object.fromEntries(inputs.measures.map((name, k) => [name, values[k]!]));
   const path = () => kernel.read(observed.get("centre")!);
   const cycle = inputs.cycle === null ? {} : lastCycle(path(), found("places"), inputs.cycle);
-  return withFitness(inputs, { ...measures, ...one.constant, ...cycle, crossing: crossed });
+  const [crossing] = kernel.read(crossed!);
+  return withFitness(inputs, { ...measures, ...one.constant, ...cycle, crossing: crossing! });
 }
 
 function withFitness({ goal }: EvaluationInputs, measures: Figures): Figures {
   const fitness = fitnessOf(goal, measures);
   return fitness === null ? measures : { ...measures, fitness };
+}
+
+/**
+ * Figures of an evaluation from those of its simulations, in single precision and in the order in which JAX
+ * computes them. The engine has them in a program of JAX, which no browser runs, and the kernel ends with
+ * one simulation. `tests/engine/audit/test_inputs.py` compares them with the engine's, bit by bit.
+ */
+
+type Figures = Record<string, number>;
+
+const { fround, sqrt } = Math;
+
+const SPREAD = "trial_spread";
+
+function sum(values: number[]): number {
+  return values.reduce((total, value) => fround(total + value), 0);
+}
+
+/** XLA multiplies by the reciprocal of a constant. */
+const divided = (value: number, by: number) => fround(value * fround(1 / by));
+
+export const mean = (values: number[]) => divided(sum(values), values.length);
+
+/** The standard deviation of a sample. */
+export function deviation(values: number[]): number {
+  const middle = mean(values);
+  const squares = values.map((value) => fround(fround(value - middle) ** 2));
+  return fround(sqrt(divided(sum(squares), values.length - 1)));
+}
+
+/** The mean of each figure; of those that decide whether a creature is feasible, the largest. */
+export function means(all: Figures[], largest: string[]): Figures {
+  if (all.length === 1) return all[0]!; // JAX takes no mean of one simulation; a sum would turn −0 into 0.
+  const names = Object.keys(all[0] ?? {});
+  const whole = (name: string) => (largest.includes(name) ? (values: number[]) => Math.max(...values) : mean);
+  return Object.fromEntries(names.map((name) => [name, whole(name)(all.map((one) => one[name]!))]));
+}
+
+/** The fitness of measures; null where a plug-in measures it. */
+export function fitnessOf(goal: Goal | null, measures: Figures): number | null {
+  if (!goal) return null;
+  if (goal.measure !== null) return fround(goal.sign * measures[goal.measure]!);
+  const moved = fround(fround(goal.displacement) * measures.displacement!);
+  const collected = fround(fround(goal.energy) * measures.energy!);
+  if (goal.energy === 0) return measures.displacement!;
+  return goal.displacement === 0 ? collected : fround(moved + collected);
+}
+
+/**
+ * The displacement of a body in its last cycle of some steps.
+ *
+ * `path` holds the places (step, 2) of its centre, and `start` begins with that at the start.
+ */
+export function lastCycle(path: Float32Array, start: Float32Array, steps: number): Figures {
+  const end = path.length - 2;
+  const from = end - 2 * steps;
+  const moved = (axis: number) => fround(path[end + axis]! - (from < 0 ? start[axis]! : path[from + axis]!));
+  return { cycle_x: moved(0), cycle_y: moved(1) };
+}
+
+/** Measures and fitness over trials; each has `fitness` among its figures unless it is unknown. */
+export function overTrials(trials: Figures[], largest: string[]): Figures {
+  if (trials.length === 1) return { ...trials[0], [SPREAD]: 0 };
+  const found = means(trials, largest);
+  if ("fitness" in found) found[SPREAD] = deviation(trials.map(({ fitness }) => fitness!));
+  return found;
 }

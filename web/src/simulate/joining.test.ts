@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { diagonal, joined } from "./joining";
-import type { Swimmer } from "./swimmer";
+import { type Swimmer, diagonal, joined } from "./swimmer";
 
 /** A filament of some nodes. */
 function filament(nodes: number, numbers: Record<string, number> = {}): Swimmer {
@@ -61,6 +60,19 @@ describe("creatures in one water", () => {
     );
     expect(arrays.get("turned")!.length).toBe(5 * 3);
     expect(arrays.get("placed")!.length).toBe(7 * 5);
+  });
+
+  it("may have no joint", () => {
+    const [bare, other] = [filament(2), filament(4)];
+    for (const swimmers of [
+      [bare, other],
+      [other, bare],
+    ]) {
+      const found = joined(swimmers);
+      expect(found.numbers).toMatchObject({ nodes: 6, edges: 4, joints: 2 });
+      expect(found.arrays.get("turned")!.length).toBe(4 * 2);
+      expect(found.arrays.get("placed")!.length).toBe(6 * 4);
+    }
   });
 
   it("take their rest shapes in one way", () => {

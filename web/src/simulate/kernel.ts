@@ -3,16 +3,17 @@
 import type { Items } from "../decode/evaluation";
 import { text } from "./text";
 
-/** An array in the memory of the kernel, of items of four bytes. */
+/** An array in the memory of the kernel, of items of four bytes, and for how many there is room. */
 export interface Area {
   address: number;
   items: number;
+  room: number;
 }
 
 /** Results in their order, each under its name. */
 export type Results = (Area & { name: string })[];
 
-export type Call = "develop" | "rollout" | "summarise";
+export type Call = "develop" | "rollout" | "summarise" | "cross";
 /** The operand at a place of a call, whose name and number of items the kernel gives. */
 export type Operands = (place: number, name: string, items: number) => Area | undefined;
 
@@ -87,8 +88,9 @@ export class Kernel {
       },
       result: (place: number, name: number, items: number) => {
         const earlier = this.asked!.reused[place];
-        const area = earlier?.items === items ? earlier : this.room(items);
-        this.asked!.results[place] = { ...area, name: this.word(name) };
+        // Nothing is freed: results whose size changes from call to call keep to the room that they have.
+        const area = earlier && earlier.room >= items ? earlier : this.room(items);
+        this.asked!.results[place] = { ...area, items, name: this.word(name) };
         return area.address;
       },
       refuse: (reason: number) => {
@@ -98,7 +100,10 @@ export class Kernel {
   }
 
   private room(items: number): Area {
-    return { address: this.exports.allocate(4 * items), items };
+    // JavaScript sees an address beyond 2 GiB as a negative number.
+    const address = this.exports.allocate(4 * items) >>> 0;
+    if (address === 0) throw new Error(text.noMemory(4 * items));
+    return { address, items, room: items };
   }
 
   // The memory may have grown: a view is made for each use.

@@ -1,7 +1,6 @@
 import { beforeAll, describe, expect, it } from "vitest";
-import { crossing } from "./crossing";
-import { deviation, fitnessOf, lastCycle, mean, overTrials } from "./figures";
-import { Kernel } from "./kernel";
+import { deviation, fitnessOf, lastCycle, mean, means, overTrials } from "./evaluate";
+import { Kernel, type Results } from "./kernel";
 import address from "./kernel.wasm?url&inline";
 import { repeated } from "./simulation";
 
@@ -10,15 +9,24 @@ const { fround } = Math;
 describe("figures over trials", () => {
   it("are means in single precision, and the largest of what limits a creature", () => {
     const trials = [0.1, 0.2, 0.4].map((x) => ({ speed: fround(x), mach: fround(x), fitness: fround(x) }));
-    const found = overTrials(trials);
+    expect(means(trials, ["mach"])).toMatchObject({
+      mach: fround(0.4),
+      speed: mean(trials.map((one) => one.speed)),
+    });
+    const found = overTrials(trials, ["mach"]);
     expect(found.speed).toBeCloseTo(0.7 / 3, 6);
     expect(found.speed).toBe(fround(found.speed!));
     expect(found.mach).toBe(fround(0.4));
     expect(found.trial_spread).toBeCloseTo(0.152753, 6);
   });
 
+  it("of one simulation are its bits, −0 too", () => {
+    const one = { wave_direction: -0, mach: fround(0.1) };
+    expect(overTrials([means([one], ["mach"])], ["mach"]).wave_direction).toBe(-0);
+  });
+
   it("do not spread in one trial", () => {
-    expect(overTrials([{ speed: 1, fitness: 2 }])).toEqual({ speed: 1, fitness: 2, trial_spread: 0 });
+    expect(overTrials([{ speed: 1, fitness: 2 }], [])).toEqual({ speed: 1, fitness: 2, trial_spread: 0 });
   });
 
   it("have the deviation of a sample", () => {
@@ -57,32 +65,6 @@ describe("fitness", () => {
   });
 });
 
-describe("crossing", () => {
-  // Two filaments of two nodes: the second turns over the first.
-  const edges = Int32Array.of(0, 1, 2, 3);
-  const apart = [0, 0, 400, 0, 0, 40, 400, 40];
-  const across = [0, 0, 400, 0, 200, -200, 200, 200];
-  const body = { edges, present: Int32Array.of(1, 1, 1, 1) };
-
-  it("is the share of poses in which edges cross", () => {
-    const frames = Float32Array.from([...apart, ...across, ...across, ...apart]);
-    expect(crossing(frames, Int32Array.from(apart), body)).toBe(0.5);
-  });
-
-  it("leaves out what crosses at the start or has not grown", () => {
-    const frames = Float32Array.from(across);
-    expect(crossing(frames, Int32Array.from(across), body)).toBe(0);
-    const grown = { edges, present: Int32Array.of(1, 1, 1, 0) };
-    expect(crossing(frames, Int32Array.from(apart), grown)).toBe(0);
-  });
-
-  it("leaves out edges with a common node", () => {
-    const chain = { edges: Int32Array.of(0, 1, 1, 2), present: Int32Array.of(1, 1, 1) };
-    const folded = [0, 0, 400, 0, 0, 0];
-    expect(crossing(Float32Array.from(folded), Int32Array.from(folded), chain)).toBe(0);
-  });
-});
-
 describe("copies", () => {
   it("carry out the rest shapes of the first", () => {
     const rest = Float32Array.of(1, 2, 3, 4);
@@ -116,6 +98,52 @@ describe("the kernel", () => {
     expect(() => one.call("summarise", SIZES, () => undefined)).toThrow("needs 64 items, got none");
   });
 
+  describe("counts poses in which edges cross", () => {
+    // Two filaments of two nodes: the second turns over the first.
+    const edges = [0, 1, 2, 3];
+    const apart = [0, 0, 400, 0, 0, 40, 400, 40];
+    const across = [0, 0, 400, 0, 200, -200, 200, 200];
+    const crossing = (poses: number[][], start: number[], ends = edges, present = [1, 1, 1, 1]) => {
+      const one = kernel();
+      const frames = Array.from({ length: 64 }, (_, frame) => poses[frame % poses.length]!);
+      const given = new Map([
+        ["frames", one.put(Float32Array.from(frames.flat()))],
+        ["whole", one.put(Int32Array.from(start))],
+        ["edges", one.put(Int32Array.from(ends))],
+        ["present", one.put(Int32Array.from(present))],
+      ]);
+      const sizes = { nodes: present.length, edges: ends.length / 2 };
+      return one.read(one.call("cross", sizes, (_, name) => given.get(name))[0]!)[0];
+    };
+
+    it("as a share", () => {
+      expect(crossing([apart, across, across, apart], apart)).toBe(0.5);
+      expect(crossing([apart, across, apart], apart)).toBe(fround(21 / 64));
+    });
+
+    it("in fewer poses of larger bodies, with the bits of XLA", () => {
+      const far = [...Array(749).keys()].flatMap(() => [4, 5]);
+      const larger = (pose: number[]) => [...pose, 4000, 4000, 4400, 4000];
+      const poses = [...Array(64).keys()].map((frame) => larger(frame < 25 ? across : apart));
+      const share = crossing(poses, larger(apart), [...edges, ...far], [1, 1, 1, 1, 1, 1]);
+      expect(share).toBe(fround(5 * fround(1 / 12))); // Frames 4, 9, … 59.
+    });
+
+    it("without what crosses at the start or has not grown", () => {
+      expect(crossing([across], across)).toBe(0);
+      expect(crossing([across], apart, edges, [1, 1, 1, 0])).toBe(0);
+    });
+
+    it("without edges that share a node", () => {
+      const folded = [0, 0, 400, 0, 0, 0];
+      expect(crossing([folded], folded, [0, 1, 1, 2], [1, 1, 1])).toBe(0);
+    });
+
+    it("and refuses edges of nodes that are missing", () => {
+      expect(() => crossing([apart], apart, [0, 1, 2, 4])).toThrow("refers to what it lacks");
+    });
+  });
+
   it("measures a body that drifts", () => {
     const one = kernel();
     const zeros = (items: number) => one.put(new Float32Array(items));
@@ -134,10 +162,17 @@ describe("the kernel", () => {
     ]);
     const single = ["speed", "node speed", "held", "heading", "power"];
     const empty = ["joints", "collected", "rest angles", "curvature"];
-    const found = one.call("summarise", SIZES, (_, name) =>
-      single.includes(name) ? zeros(1) : empty.includes(name) ? zeros(0) : given.get(name),
-    );
+    const measured = (reused: Results = []) =>
+      one.call(
+        "summarise",
+        SIZES,
+        (_, name) => (single.includes(name) ? zeros(1) : empty.includes(name) ? zeros(0) : given.get(name)),
+        reused,
+      );
+    const found = measured();
     const [displacement] = one.read(found.find(({ name }) => name === "measures")!);
     expect(displacement).toBe(0.25);
+    // Results that were shorter at the last call have the room of those before.
+    expect(measured(found.map((area) => ({ ...area, items: 1 })))).toEqual(found);
   });
 });

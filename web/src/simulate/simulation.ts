@@ -18,7 +18,7 @@ export interface Simulated {
   begin: Named;
   /** Results of the rollout in their order. */
   end: Results;
-  /** What the summary takes, by name. */
+  /** Operands of the summary, by name. */
   observed: Named;
   /** Results of the summary, by name. */
   summary: Named;

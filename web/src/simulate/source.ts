@@ -1,4 +1,6 @@
-/** Where the kernel and the scripts of web workers come from: the server. A saved page has its own. */
+/** The kernel and the script of its web workers, from the server; a saved page has its own. */
+
+import { text } from "./text";
 
 /** The address of the kernel; without a compiler, the page is built without one. */
 const [KERNEL] = Object.values(
@@ -8,8 +10,9 @@ const [KERNEL] = Object.values(
 export const isInstalled = KERNEL !== undefined;
 
 export async function kernelBytes(signal?: AbortSignal): Promise<ArrayBuffer> {
-  return (await fetch(KERNEL!, { signal })).arrayBuffer();
+  const response = await fetch(KERNEL!, { signal });
+  if (!response.ok) throw new Error(text.noKernel(response.status));
+  return response.arrayBuffer();
 }
 
-export const evaluator = () => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
-export const swimmer = () => new Worker(new URL("./swimWorker.ts", import.meta.url), { type: "module" });
+export const startWorker = () => new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });

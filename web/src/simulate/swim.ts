@@ -1,10 +1,10 @@
 /** Creatures that swim on after their evaluation, in water that visitors change. */
 
 import type { EvaluationInputs } from "../decode/evaluation";
-import { joined } from "./joining";
+import { type Rest, type Swimmer, joined, REST, STATE, swimmerOf, within, writeRest } from "./swimmer";
 import { type Area, Kernel, type Results } from "./kernel";
 import { GIVEN, type Named, PLANE } from "./simulation";
-import { REST, type Rest, STATE, type Swimmer, swimmerOf, within, writeRest } from "./swimmer";
+import { text } from "./text";
 import {
   type Place,
   type Plane,
@@ -13,6 +13,7 @@ import {
   pushed,
   quantised,
   shortest,
+  sideFor,
   velocities,
   vorticity,
 } from "./water";
@@ -30,7 +31,7 @@ export interface Frame {
   scales: { vorticity: number; velocity: number };
 }
 
-/** What stays the same while creatures swim. */
+/** Facts that stay the same while creatures swim. */
 export interface Stage {
   size: [number, number];
   viscosity: number;
@@ -79,16 +80,24 @@ export class Swim {
     this.kernel.view(this.operands.get("parameters")!)[VISCOSITY] = viscosity;
   }
 
-  /** Evaluate another creature and put it where most room is; throws an error if it does not fit. */
+  /** Evaluate another creature and put it where most room is; throws an error if there is none for it. */
   join(inputs: EvaluationInputs): void {
     const other = swimmerOf(this.module, inputs);
     joined([...this.swimmers, other]); // Whether it fits, before anything changes.
-    const positions = other.arrays.get("positions")!;
-    const away = freest(this.positions(), this.stage.size);
-    const mean = meanPlace(positions);
+    const positions = other.arrays.get("positions") as Float32Array;
+    const present = other.arrays.get("present")!;
+    const grown = positions.filter((_, i) => present[Math.floor(i / 2)]);
+    if (!grown.every(Number.isFinite)) throw new Error(text.diverged);
+    const mean = meanPlace(grown);
+    const body = grown.map((place, i) => place - mean[i % 2]!);
+    const { size } = this.stage;
+    const [needed, side] = [sideFor(body), Math.min(...size)];
+    if (needed > side) throw new Error(text.tooLarge(needed, side));
+    const place = freest(this.positions(), size, body, this.swimmers[0]!.arrays.get("walls")!);
+    if (!place) throw new Error(text.noRoom);
     other.arrays.set(
       "positions",
-      positions.map((place, i) => place + away[i % 2]! - mean[i % 2]!),
+      positions.map((at, i) => at + place[i % 2]! - mean[i % 2]!),
     );
     const planes = this.planes().map((plane) => plane.slice());
     this.keep();
@@ -111,7 +120,7 @@ export class Swim {
     pushed(this.planes(), this.stage.size, this.from(away), velocity);
   }
 
-  /** For one step, pull a node that has grown towards a place at a distance from the first creature. */
+  /** Pull a grown node for one step, towards a place at a distance from the first creature. */
   pull(node: number, away: Place): void {
     const positions = this.kernel.view(this.state[POSITIONS]!);
     const at = 2 * this.grown[node]!;
@@ -198,7 +207,7 @@ export class Swim {
 
   /** The rest shapes of the next steps. */
   private rows(name: Rest, items: number, steps: number): Area {
-    const area = { address: this.scratch[name].address, items };
+    const area = { ...this.scratch[name], items };
     const to = this.kernel.view(area);
     let at = 0;
     for (let step = 0; step < steps; step++) {

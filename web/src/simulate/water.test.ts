@@ -1,7 +1,18 @@
 import { describe, expect, it } from "vitest";
-import { type Plane, forced, freest, pushed, quantised, shortest, velocities, vorticity } from "./water";
+import {
+  type Plane,
+  forced,
+  freest,
+  pushed,
+  quantised,
+  shortest,
+  sideFor,
+  velocities,
+  vorticity,
+} from "./water";
 
 const SIZE: [number, number] = [16, 12];
+const NODE = Float32Array.of(0, 0);
 const CELLS = SIZE[0] * SIZE[1];
 const still = (): Plane[] => Array.from({ length: 9 }, () => new Float32Array(CELLS));
 const total = (plane: Plane) => plane.reduce((sum, value) => sum + value, 0);
@@ -31,9 +42,30 @@ describe("a force", () => {
 
 describe("a place for another creature", () => {
   it("is the farthest from all nodes, across the edges of the world too", () => {
-    expect(freest(Float32Array.of(0, 0, 16, 12), SIZE)).toEqual([8, 6]);
-    expect(freest(Float32Array.of(8, 6, 40, 30), SIZE)).toEqual([0, 0]);
+    expect(freest(Float32Array.of(0, 0, 16, 12), SIZE, NODE, [])).toEqual([8, 6]);
+    expect(freest(Float32Array.of(8, 6, 40, 30), SIZE, NODE, [])).toEqual([0, 0]);
     expect(shortest([15, -11], SIZE)).toEqual([-1, 1]);
+  });
+});
+
+describe("a place between walls", () => {
+  // A channel along x, whose walls are the outer rows.
+  const channel = planeOf((_, y) => Number(y === 0 || y === SIZE[1] - 1));
+
+  it("is one whose body reaches no wall", () => {
+    expect(freest(Float32Array.of(8, 6), SIZE, NODE, channel)).toEqual([0, 3]);
+    const across = Float32Array.of(0, -2, 0, 0, 0, 2);
+    expect(freest(Float32Array.of(8, 6), SIZE, across, channel)).toEqual([0, 4.5]);
+  });
+
+  it("may not be there", () => {
+    const across = Float32Array.of(0, -4, 0, 0, 0, 4);
+    expect(freest(Float32Array.of(8, 6), SIZE, across, channel)).toBeNull();
+    expect(freest(Float32Array.of(8, 6), SIZE, across, [])).not.toBeNull();
+  });
+
+  it("needs water that is longer than the body", () => {
+    expect(sideFor(Float32Array.of(0, -3, 0, 0, 4, 0))).toBe(5 + 4);
   });
 });
 

@@ -4,22 +4,15 @@ export type Plane = Float32Array;
 /** A place or a vector, in cells. */
 export type Place = [x: number, y: number];
 
-/** Directions of the lattice, and their weights. */
-const DIRECTIONS = [
-  [0, 0],
-  [1, 0],
-  [-1, 0],
-  [0, 1],
-  [0, -1],
-  [1, 1],
-  [-1, -1],
-  [1, -1],
-  [-1, 1],
-] as const;
+/** Directions of the lattice along x and y, and their weights. */
+const CX = [0, 1, -1, 0, 0, 1, -1, 1, -1];
+const CY = [0, 0, 0, 1, -1, 1, -1, -1, 1];
 const WEIGHTS = [4 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 36, 1 / 36, 1 / 36, 1 / 36];
 /** Cells around a push or a force. */
 const RADIUS = 3;
 const LEVELS = 127;
+/** Cells beside a node whose water it moves. */
+const REACH = 2;
 /** Places along each axis where another creature may begin. */
 const GRID = 16;
 
@@ -33,8 +26,8 @@ export function velocities(populations: Plane[]): [Plane, Plane] {
     for (let i = 0; i < 9; i++) {
       const value = populations[i]![cell]!;
       density += value;
-      x[cell]! += DIRECTIONS[i]![0] * value;
-      y[cell]! += DIRECTIONS[i]![1] * value;
+      x[cell]! += CX[i]! * value;
+      y[cell]! += CY[i]! * value;
     }
     x[cell]! /= density;
     y[cell]! /= density;
@@ -83,8 +76,8 @@ export function forced(populations: Plane[], size: [number, number], place: Plac
 
 function push(populations: Plane[], cells: [number, number][], [vx, vy]: Place): void {
   for (const [cell, share] of cells) {
-    DIRECTIONS.forEach(([cx, cy], i) => {
-      populations[i]![cell]! += 3 * WEIGHTS[i]! * share * (cx * vx + cy * vy);
+    WEIGHTS.forEach((weight, i) => {
+      populations[i]![cell]! += 3 * weight * share * (CX[i]! * vx + CY[i]! * vy);
     });
   }
 }
@@ -101,9 +94,17 @@ function around([width, height]: [number, number], [x0, y0]: Place): [cell: numb
   return found;
 }
 
-/** The place of a grid over the water that is the farthest from all positions (node, 2). */
-export function freest(positions: Float32Array, [width, height]: [number, number]): Place {
-  let best: Place = [0, 0];
+/**
+ * The place of a grid over the water that is the farthest from all positions (node, 2), for a body whose nodes
+ * stand around it. Null if the body would reach a wall (a plane, or empty) everywhere.
+ */
+export function freest(
+  positions: Float32Array,
+  [width, height]: [number, number],
+  body: Float32Array,
+  walls: ArrayLike<number>,
+): Place | null {
+  let best: Place | null = null;
   let farthest = -1;
   for (let i = 0; i < GRID ** 2; i++) {
     const place: Place = [(Math.floor(i / GRID) * width) / GRID, ((i % GRID) * height) / GRID];
@@ -112,9 +113,39 @@ export function freest(positions: Float32Array, [width, height]: [number, number
       const gap = shortest([positions[node]! - place[0], positions[node + 1]! - place[1]], [width, height]);
       nearest = Math.min(nearest, Math.hypot(...gap));
     }
-    if (nearest > farthest) [farthest, best] = [nearest, place];
+    if (nearest <= farthest || reaches(body, place, [width, height], walls)) continue;
+    [farthest, best] = [nearest, place];
   }
   return best;
+}
+
+/** True if a cell whose water a body at a place would move is solid. */
+function reaches(
+  body: Float32Array,
+  [x0, y0]: Place,
+  [width, height]: [number, number],
+  walls: ArrayLike<number>,
+): boolean {
+  if (walls.length === 0) return false;
+  for (let node = 0; node < body.length; node += 2) {
+    const [x, y] = [Math.round(x0 + body[node]!), Math.round(y0 + body[node + 1]!)];
+    for (let cell = 0; cell < (2 * REACH + 1) ** 2; cell++) {
+      const [dx, dy] = [Math.floor(cell / (2 * REACH + 1)) - REACH, (cell % (2 * REACH + 1)) - REACH];
+      if (walls[wrap(x + dx, width) * height + wrap(y + dy, height)]) return true;
+    }
+  }
+  return false;
+}
+
+/** The length of the side that water needs for a body, turned any way: it must not reach its own image. */
+export function sideFor(body: Float32Array): number {
+  let longest = 0;
+  for (let i = 0; i < body.length; i += 2) {
+    for (let j = 0; j < i; j += 2) {
+      longest = Math.max(longest, Math.hypot(body[i]! - body[j]!, body[i + 1]! - body[j + 1]!));
+    }
+  }
+  return Math.ceil(longest) + 2 * REACH;
 }
 
 /** The shortest of the ways between two places of a world that repeats. */

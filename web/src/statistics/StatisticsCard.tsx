@@ -2,14 +2,17 @@
 
 import { statisticsUrl } from "../api/files";
 import type { ComparedRuns, MeasureStatistics, Statistics } from "../api/types";
-import { useStatistics } from "../store/statistics";
-import { count } from "../ui/format";
+import { capitalised, count, number, percent } from "../ui/format";
 import { FileLink } from "../ui/links";
 import { Card } from "../ui/Page";
 import { type Column, Table } from "../ui/Table";
-import { capitalised, formatOf, intervalText, pairsOf, probability, summariesOf } from "./rows";
 import { text } from "./text";
 import "./statistics.css";
+import * as api from "../api/client";
+import { type Loaded, useFetched } from "../store/fetch";
+import { useThrottled } from "../store/polling";
+import { type State, epochOf } from "../store/state";
+import { useStore } from "../store/store";
 
 const MEASURES = ["qd_score", "coverage", "best"];
 
@@ -127,4 +130,56 @@ function Figure({ value, range }: { value: string; range: string }) {
       {range && <span class="quiet small spread">{range}</span>}
     </span>
   );
+}
+
+const SHARES = ["coverage", "corrected_coverage", "hit_rate"];
+
+/** A number of a measure; null where a run does not reach the value, or has no elites. */
+export const formatOf =
+  ({ measure, less_is_better }: MeasureStatistics) =>
+  (value: number | null): string => {
+    if (value === null) return less_is_better ? text.notReached : text.noElites;
+    if (less_is_better) return count(value);
+    return SHARES.includes(measure.replace(/@.*/, "")) ? percent(value) : number(value);
+  };
+
+export const intervalText = (measure: MeasureStatistics, low: number | null, high: number | null) =>
+  text.range(formatOf(measure)(low), formatOf(measure)(high));
+
+export const probability = (p: number) => (p < 0.001 ? text.under : p.toFixed(3));
+
+/** A row for each measure and group; the first of a measure names it. */
+export const summariesOf = (measures: MeasureStatistics[]) =>
+  measures.flatMap((measure) =>
+    measure.groups.map((group, i) => ({
+      key: `${measure.measure} ${group.group}`,
+      named: i === 0 ? capitalised(measure.title) : "",
+      measure,
+      group,
+    })),
+  );
+
+/** A row for each measure and pair of groups; the first of a measure names it. */
+export const pairsOf = (measures: MeasureStatistics[]) =>
+  measures.flatMap((measure) =>
+    measure.pairs.map((pair, i) => ({
+      key: `${measure.measure} ${pair.group} ${pair.other}`,
+      named: i === 0 ? capitalised(measure.title) : "",
+      pair,
+    })),
+  );
+
+/** Statistics of runs that have ended, read again when one of them changes. */
+function useStatistics(of: ComparedRuns, measures: string): Loaded<Statistics> {
+  const version = useThrottled(useStore((state) => versionOf(state, of)));
+  const asked = Object.values(of).join();
+  return useFetched(() => api.readStatistics(of, measures), [asked, version, measures]);
+}
+
+function versionOf(state: State, of: ComparedRuns): string {
+  if ("sweep" in of) return `${state.epoch} ${state.sweepVersions.get(of.sweep) ?? 0}`;
+  return of.runs
+    .split(",")
+    .map((id) => epochOf(state, id))
+    .join();
 }

@@ -2,7 +2,7 @@
 
 import { describe, expect, it } from "vitest";
 import type { MeasureStatistics } from "../api/types";
-import { formatOf, intervalText, pairsOf, probability, summariesOf } from "./rows";
+import { formatOf, intervalText, pairsOf, probability, summariesOf } from "./StatisticsCard";
 
 const test = { test: "Mann–Whitney, exact", statistic: 0, p: 0.008 };
 

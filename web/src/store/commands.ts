@@ -4,7 +4,7 @@ import * as api from "../api/client";
 import type { Run, RunChange } from "../api/types";
 import { applyEdit } from "./reconcile";
 import { applyResponse, currentState, update } from "./store";
-import { orShowError, delayWithUndo, offerUndo } from "./toasts";
+import { orShowError, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Apply the answer of the server, or show its error; return true on success. */
@@ -12,8 +12,11 @@ const apply = async (request: Promise<Run>) => (await orShowError(applyResponse(
 
 export const sendCommand = (id: string, verb: api.RunCommand) => apply(api.commandRun(id, verb));
 
-export const cancelWithUndo = (id: string, title: string) =>
-  delayWithUndo(id, text.cancelling(title), () => void sendCommand(id, "cancel"));
+/** Cancel at once: a page that is closed right after must not leave the run going. */
+export async function cancelWithUndo(id: string, title: string): Promise<void> {
+  const done = await sendCommand(id, "cancel");
+  if (done) offerUndo(text.cancelled(title), () => void sendCommand(id, "uncancel"));
+}
 
 export const extend = (id: string, generations: number) => apply(api.extendRun(id, generations));
 
@@ -26,29 +29,30 @@ export async function remove(id: string, title: string): Promise<boolean> {
   return removed;
 }
 
-/** Change name, tags, note or scheduling at once; revert the change if the server refuses it. */
-export async function editRun(id: string, change: RunChange): Promise<void> {
-  const before = currentState().runs.get(id);
+/** Change name, tags, note or scheduling at once; return true if the server accepts it. */
+export async function editRun(id: string, change: RunChange): Promise<boolean> {
   update((state) => applyEdit(state, id, change));
-  if ((await apply(api.changeRun(id, change))) || !before) return;
-  const { name, tags, note, priority, labels, may_yield, device_patience } = before;
-  const known = { name, tags, note, priority, labels, may_yield, device_patience };
-  update((state) => applyEdit(state, id, known));
+  const accepted = await apply(api.changeRun(id, change));
+  // The server alone knows what the run is now: others, or another edit, may have changed it meanwhile.
+  if (!accepted) await applyResponse("response", api.readRun(id)).catch(() => {}); // A reset reads it later.
+  return accepted;
 }
 
 export function addTag({ id, tags }: Run, tag: string): void {
   if (!tags.includes(tag)) void editRun(id, { tags: [...tags, tag] });
 }
 
-export function removeTag({ id, tags }: Run, tag: string): void {
-  void editRun(id, { tags: tags.filter((each) => each !== tag) });
+export async function removeTag({ id, tags }: Run, tag: string): Promise<void> {
+  if (!(await editRun(id, { tags: tags.filter((each) => each !== tag) }))) return;
   offerUndo(text.tagRemoved(tag), () => {
     const run = currentState().runs.get(id);
     if (run) addTag(run, tag);
   });
 }
 
-export function removeNote({ id, note }: Run): void {
-  void editRun(id, { note: null });
-  offerUndo(text.noteRemoved, () => void editRun(id, { note }));
+export async function removeNote({ id, note }: Run): Promise<void> {
+  if (!(await editRun(id, { note: null }))) return;
+  offerUndo(text.noteRemoved, () => {
+    if (!currentState().runs.get(id)?.note) void editRun(id, { note }); // A newer note stays.
+  });
 }

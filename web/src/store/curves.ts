@@ -1,12 +1,10 @@
 /** The curves of a run as columns, thinned out if they get long, and its sparkline. */
 
 import type { GenerationEvent, Generations, Values } from "../api/types";
+import { isCount, isCurve } from "./figureNames";
 
 export const MAX_POINTS = 4000;
 const PLOTTED = ["generation", "evaluations", "seconds", "qd_score", "coverage", "best"] as const;
-
-/** Prefix of names of counts, which are added up when curves are thinned out. */
-export const INFEASIBLE = "infeasible: ";
 
 export type Column = readonly (number | null)[];
 
@@ -67,7 +65,7 @@ function thinOut(summary: NumberColumns): NumberColumns {
   const columns = Object.entries(summary).map(([name, column]) => {
     const last = column.length - 1;
     const indices = [...Array.from({ length: Math.ceil(last / 2) }, (_, k) => 2 * k), last];
-    const join = name.startsWith(INFEASIBLE) ? sumOf : newestOf;
+    const join = isCount(name) ? sumOf : newestOf;
     return [name, indices.map((i, k) => join(column.slice((indices[k - 1] ?? -1) + 1, i + 1)))];
   });
   return Object.fromEntries(columns);
@@ -89,7 +87,9 @@ function concatenate(one: NumberColumns, length: number, other: NumberColumns, m
 }
 
 function numbersOf(values: Values | null): { [name: string]: number } {
-  const numbers = Object.entries(values ?? {}).filter(([, value]) => typeof value === "number");
+  const numbers = Object.entries(values ?? {}).filter(
+    ([name, value]) => typeof value === "number" && isCurve(name),
+  );
   return Object.fromEntries(numbers) as { [name: string]: number };
 }
 

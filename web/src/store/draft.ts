@@ -1,6 +1,7 @@
 /** The draft of a spec, kept until the tab is closed, and its source in the address. */
 
 import type { Spec } from "../api/types";
+import { keep, readKept } from "./kept";
 
 export interface Base {
   kind: "preset" | "run" | "creature" | "pasted";
@@ -63,13 +64,9 @@ export function forkAddress(
 
 export const FORK_PARAMETERS = ["creature", "cells", "at"] as const;
 
-export function saveDraft(draft: Draft): void {
-  try {
-    sessionStorage.setItem(KEY, JSON.stringify(draft));
-  } catch {
-    // Storage is full or forbidden: the draft lives as long as the page.
-  }
-}
+const storage = () => sessionStorage;
+
+export const saveDraft = (draft: Draft) => keep(KEY, draft, storage);
 
 export function discardDraft(): void {
   sessionStorage.removeItem(KEY);
@@ -77,18 +74,9 @@ export function discardDraft(): void {
 
 /** The stored draft, if its source is the requested one or none is requested. */
 export function loadDraft(requested: Address | null): Draft | null {
-  const draft = storedDraft();
-  if (!draft || !requested) return draft;
-  return String(addressOf(draft.base)) === String(requested) ? draft : null;
-}
-
-function storedDraft(): Draft | null {
-  try {
-    const draft = JSON.parse(sessionStorage.getItem(KEY) ?? "null") as Draft | null;
-    return draft?.base?.spec && draft.spec ? draft : null;
-  } catch {
-    return null;
-  }
+  const draft = readKept<Draft | null>(KEY, null, storage);
+  if (!draft?.base?.spec || !draft.spec) return null;
+  return !requested || String(addressOf(draft.base)) === String(requested) ? draft : null;
 }
 
 export const formatCreatures = (names: readonly string[]) => names.join(",");

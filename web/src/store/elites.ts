@@ -93,6 +93,19 @@ function eliteAt(columns: ArchiveColumns, i: number, reportedAt: number): Elite 
   };
 }
 
+/** Recorded measures by name and creature. */
+export type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
+
+export function measuresOf({ creature, measures }: Pick<History, "creature" | "measures">): Measures {
+  const columns = Object.entries(measures).map(([name, values]) => {
+    const known = values.flatMap((value, i): [string, number][] =>
+      value == null ? [] : [[creature[i]!, value]],
+    );
+    return [name, new Map(known)] as const;
+  });
+  return new Map(columns);
+}
+
 export function fittest<K>(elites: Iterable<readonly [K, Elite]>): readonly [K, Elite] | null {
   let best: readonly [K, Elite] | null = null;
   for (const entry of elites) if (!best || entry[1].fitness > best[1].fitness) best = entry;

@@ -5,7 +5,7 @@ import * as api from "../api/client";
 import { messageOf } from "../api/problem";
 import type { Experiment, History, Reprojection, Results, Run, SpeciesHistory } from "../api/types";
 import type { Curves } from "./curves";
-import type { Elites } from "./elites";
+import { type Elites, type Measures, measuresOf } from "./elites";
 import { usePolled, useThrottled, useTick } from "./polling";
 import { epochOf, withSnapshot } from "./state";
 import { applyResponse, currentState, retain, update, useEach, useStore } from "./store";
@@ -28,19 +28,43 @@ export interface Loaded<T> {
   error: string | null;
 }
 
-/** The answer to a request that is repeated when one of `inputs` changes. */
-export function useFetched<T>(fetch: () => Promise<T>, inputs: unknown[]): Loaded<T> {
+/**
+ * The answer to a request that is repeated when one of `inputs` changes, or some time after.
+ *
+ * It stays until a newer one comes. So it may be one to former inputs.
+ */
+export function useFetched<T>(fetch: () => Promise<T>, inputs: unknown[], delayMs = 0): Loaded<T> {
   const [loaded, setLoaded] = useState<Loaded<T>>({ value: null, error: null });
+  const send = useRef(inOrder<T>((answer) => setLoaded((old) => ({ ...old, ...answer })))).current;
   useEffect(() => {
-    let current = true;
-    fetch()
-      .then((value) => current && setLoaded({ value, error: null }))
-      .catch((error) => current && setLoaded((old) => ({ ...old, error: messageOf(error) })));
-    return () => {
-      current = false;
-    };
+    if (delayMs === 0) return send(fetch());
+    const timer = setTimeout(() => send(fetch()), delayMs);
+    return () => clearTimeout(timer);
   }, inputs);
   return loaded;
+}
+
+/**
+ * Show the answers to repeated requests; an answer that a newer one has overtaken is dropped.
+ *
+ * An answer is shown though a newer request is on its way: a server may need longer for it than the time
+ * between two requests, and then none would ever be shown.
+ */
+export function inOrder<T>(show: (answer: Partial<Loaded<T>>) => void): (request: Promise<T>) => void {
+  let sent = 0;
+  let shown = 0;
+  return (request) => {
+    const place = ++sent;
+    const pass = (answer: Partial<Loaded<T>>) => {
+      if (place < shown) return;
+      shown = place;
+      show(answer);
+    };
+    request.then(
+      (value) => pass({ value, error: null }),
+      (error) => pass({ error: messageOf(error) }),
+    );
+  };
 }
 
 const useEpoch = (id: string) => useStore((state) => epochOf(state, id));
@@ -107,24 +131,12 @@ export function useMeasures(id: string, names: string[], elites: Elites): Measur
   return value ?? NONE;
 }
 
-type Measures = ReadonlyMap<string, ReadonlyMap<string, number>>;
-
 const NONE: Measures = new Map();
 
 function mergeMeasures(known: Measures, added: Measures): Measures {
   const column = ([name, values]: [string, ReadonlyMap<string, number>]) =>
     [name, new Map([...(known.get(name) ?? []), ...values])] as const;
   return new Map([...added].map(column));
-}
-
-function measuresOf({ creature, measures }: Pick<History, "creature" | "measures">): Measures {
-  const columns = Object.entries(measures).map(([name, values]) => {
-    const known = values.flatMap((value, i): [string, number][] =>
-      value === null ? [] : [[creature[i]!, value]],
-    );
-    return [name, new Map(known)] as const;
-  });
-  return new Map(columns);
 }
 
 interface Past {
@@ -176,7 +188,7 @@ export const useCentroids = (id: string, enabled: boolean) =>
 
 /** The results table of a run, updated by events. */
 export function useResults(id: string): Loaded<Results> {
-  const version = useStore((state) => state.tableVersions.get(id));
+  const version = useThrottled(useStore((state) => state.tableVersions.get(id)));
   return useFetched(() => api.readResults(id), [id, useEpoch(id), version]);
 }
 
@@ -196,7 +208,7 @@ export function useSpecies({ id, status, generation }: Run): Loaded<SpeciesHisto
 /** Workers and the queue, updated by the clock and by changes of runs. */
 export function useWorkers() {
   const tick = useTick(REFRESH_MS);
-  const version = useStore((state) => state.listVersion);
+  const version = useThrottled(useStore((state) => state.listVersion));
   const read = async () => {
     const [workers, queue] = await Promise.all([api.readWorkers(), api.readQueue()]);
     return { workers, queue };

@@ -44,3 +44,16 @@ it("a creature that another list does not render is rendered for the one that do
   await allOf(1);
   expect(asked).toEqual(["e0"]);
 });
+
+it("a batch that failed is asked for again", async () => {
+  const batches: string[][] = [];
+  const failing = (some: readonly { creature: string }[]) => {
+    batches.push(names([...some]));
+    return Promise.reject(new Error("Refused."));
+  };
+  for (let times = 0; times < 2; times++) {
+    request(Symbol(), failing, visible("f0"), false);
+    await settled();
+  }
+  expect(batches).toEqual([["f0"], ["f0"]]);
+});

@@ -95,18 +95,18 @@ export function request<T extends Visible>(
 }
 
 function requestBatch<T extends Visible>(readBatch: ReadBatch<T>, elites: T[]): void {
-  const done = (streams: PoseStream[]) => {
-    for (const stream of streams) add(stream);
-    for (const { creature } of elites) {
-      batched.delete(creature);
-      if (!cache.has(creature)) lacking.add(creature);
-    }
+  const done = () => {
+    for (const { creature } of elites) batched.delete(creature);
     startRequests();
   };
   const end = poll(() => readBatch(elites).then(decodePoseBatch), {
-    value: done,
+    value: (streams) => {
+      for (const stream of streams) add(stream);
+      for (const { creature } of elites) if (!cache.has(creature)) lacking.add(creature);
+      done();
+    },
     note: () => {},
-    error: () => done([]),
+    error: done, // A later request asks again.
   });
   for (const { creature } of elites) batched.set(creature, end);
 }

@@ -12,7 +12,7 @@ export function countEvent(state: State, id: string): State {
 export function applyEvent(state: State, event: RunEvent): State {
   const next = countEvent(state, event.id);
   const known = state.runs.get(event.id);
-  const spec = known?.spec ?? event.spec;
+  const spec = newest(known?.spec, event.spec);
   if (!spec) return { ...next, eventsWithoutSpec: new Map(state.eventsWithoutSpec).set(event.id, event) };
   const run = { ...event, spec };
   const listVersion =
@@ -37,11 +37,16 @@ export function applyResponses(state: State, answers: readonly Run[], sentAt: nu
   return { ...state, runs, lastEvent, eventsWithoutSpec };
 }
 
-/** The newer state of a run; its spec stays the same object. */
+/** The newer spec: an extension changes it. An equal one stays the same object. */
+function newest<Came extends Run["spec"] | undefined>(known: Run["spec"] | undefined, came: Came) {
+  return known && (came === undefined || !isDifferent(known, came)) ? known : came;
+}
+
+/** The newer state of a run; an equal spec stays the same object. */
 function newerOf(state: State, answer: Run, sentAt: number): Run {
   const known = state.runs.get(answer.id);
   const late = sentAt < Math.max(state.lastEvent.get(answer.id) ?? 0, state.lastReset);
-  if (!late) return { ...answer, spec: known?.spec ?? answer.spec };
+  if (!late) return { ...answer, spec: newest(known?.spec, answer.spec) };
   if (!known) return { ...answer, ...state.eventsWithoutSpec.get(answer.id), spec: answer.spec };
   // Events carry no rates: those of a late answer are the newest.
   const { evaluations_per_second, eta_seconds } = answer;

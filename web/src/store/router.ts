@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 import { useListener } from "./polling";
 
 /** A page, with the run, sweep or creature that it shows, or the share and a creature in it. */
-export interface Route {
+interface Route {
   page: string;
   id?: string;
   slug?: string;

@@ -53,7 +53,7 @@ const GENERATIONS: Generations = {
 export function generationEvent(number: number): GenerationEvent {
   const [evaluations, seconds] = [16 * number, 2 * number];
   const values = { qd_score: number, coverage: number, best: number, mean: number, infeasible: 0 };
-  const summary = { inserted: number, ended: "words", ...(number % 2 === 1 && { late: number }) };
+  const summary = { inserted: number, "ended.fitness": 1, ...(number % 2 === 1 && { late: number }) };
   return { run: "a", generation: number, evaluations, seconds, ...values, summary };
 }
 

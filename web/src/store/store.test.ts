@@ -140,6 +140,13 @@ describe("an answer", () => {
     const again = applyResponses(known, [structuredClone(late)], known.eventCount);
     expect(again.runs.get("a")!.spec).toBe(RUN.spec);
   });
+
+  it("takes the spec of an extended run, from an answer and from an event", () => {
+    const spec = { ...RUN.spec, seed: 99 } as Run["spec"];
+    const answered = applyResponses(known, [{ ...late, spec }], known.eventCount);
+    expect(answered.runs.get("a")!.spec).toEqual(spec);
+    expect(withRunEvent(known, { ...RUN, spec }).runs.get("a")!.spec).toEqual(spec);
+  });
 });
 
 describe("an edit of a run", () => {

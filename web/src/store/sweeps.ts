@@ -5,7 +5,7 @@ import type { Sweep, SweepChanged, SweepCurves, SweepPage, SweepSummary } from "
 import { type Loaded, useFetched } from "./fetch";
 import { useStore } from "./store";
 import { useThrottled } from "./polling";
-import { orShowError, delayWithUndo, showToast, offerUndo } from "./toasts";
+import { orShowError, showToast, offerUndo } from "./toasts";
 import { text } from "./text";
 
 /** Points per curve, as many as a screen resolves. */
@@ -41,7 +41,7 @@ export function useSweep(id: string, withRuns: boolean): Loaded<SweepDetail> {
 const outcome = ({ changed, skipped }: SweepChanged, done: string) =>
   text.outcome(text.runs(changed.length), done, skipped.length > 0 ? text.runs(skipped.length) : null);
 
-export async function sendSweepCommand(id: string, verb: api.RunCommand): Promise<void> {
+export async function sendSweepCommand(id: string, verb: "pause" | "resume"): Promise<void> {
   const answer = await orShowError(api.commandSweep(id, verb));
   if (answer) showToast({ kind: "note", text: outcome(answer, text.outcomes[verb]) });
 }
@@ -56,5 +56,9 @@ export async function removeSweep(id: string): Promise<void> {
   if (answer) offerUndo(outcome(answer, text.deleted), () => void restoreSweep(id));
 }
 
-export const cancelSweepWithUndo = (id: string, title: string) =>
-  delayWithUndo(id, text.cancellingSweep(title), () => void sendSweepCommand(id, "cancel"));
+export async function cancelSweepWithUndo(id: string): Promise<void> {
+  const answer = await orShowError(api.commandSweep(id, "cancel"));
+  if (!answer) return;
+  const takeBack = () => void orShowError(api.uncancelSweep(id, answer.changed));
+  offerUndo(outcome(answer, text.outcomes.cancel), takeBack);
+}

@@ -1,8 +1,8 @@
-/** Texts of notes about what was done, and of refusals. */
+/** Texts of notes about completed actions, and of refusals. */
 
 export const text = {
   undo: "Undo",
-  cancelling: (title: string) => `Cancelling ${title} …`,
+  cancelled: (title: string) => `${title} is cancelled.`,
   tagRemoved: (tag: string) => `Removed the tag ${tag}.`,
   noteRemoved: "Removed the note.",
   inBin: (title: string) => `${title} is in the bin.`,
@@ -15,5 +15,4 @@ export const text = {
   runs: (count: number) => `${count} ${count === 1 ? "run" : "runs"}`,
   outcome: (changed: string, done: string, left: string | null) =>
     `${changed} ${done}${left ? `; ${left} not changed` : ""}.`,
-  cancellingSweep: (title: string) => `Cancelling all runs of ${title} …`,
 };

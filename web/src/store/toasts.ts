@@ -50,25 +50,6 @@ export function offerUndo(note: string, undo: () => void): number {
   return toast;
 }
 
-const UNDO_MS = 4000;
-
-/** Names of delayed actions. An action that is delayed twice is done once, and one undo stops it. */
-const delayed = new Set<string>();
-
-/** Do something after a delay in which it can be undone. */
-export function delayWithUndo(name: string, note: string, act: () => void): void {
-  if (delayed.has(name)) return;
-  delayed.add(name);
-  const timer = setTimeout(() => {
-    delayed.delete(name);
-    act();
-  }, UNDO_MS);
-  offerUndo(note, () => {
-    delayed.delete(name);
-    clearTimeout(timer);
-  });
-}
-
 /** Ctrl+Z presses the newest undo button, which the Tab key reaches too late. */
 export function undoLatest(event: KeyboardEvent): void {
   const field = (event.target as Element).closest("input:not([type=checkbox]), textarea, select");

@@ -22,8 +22,7 @@ import { ConfirmButton } from "../ui/ConfirmButton";
 import { NameField } from "../run/NameField";
 import { MAX_LINES, colourOf, dashOf } from "../charts/lineStyle";
 import { CurveBar, QueryCheck } from "../charts/curves/CurveOptions";
-import { CaseCreatures } from "./CaseCreatures";
-import { Cases, Finals, Members } from "./CaseTables";
+import { CaseCreatures, Cases, Finals, Members } from "./CaseTables";
 import { lazy } from "../ui/lazy";
 import { text } from "./text";
 
@@ -157,7 +156,7 @@ function Actions({ sweep, title }: { sweep: Sweep; title: string }) {
       )}
       {active > 0 && <button onClick={() => void sendSweepCommand(id, "pause")}>{text.pauseAll}</button>}
       {active + paused > 0 && (
-        <button class="danger" onClick={() => cancelSweepWithUndo(id, title)}>
+        <button class="danger" onClick={() => void cancelSweepWithUndo(id)}>
           {text.cancelAll}
         </button>
       )}

@@ -63,7 +63,7 @@ export function caseName(values: CaseValues): string {
   return parts.join(", ") || text.oneCase;
 }
 
-export function gridValueText(value: Json): string {
+function gridValueText(value: Json): string {
   if (typeof value === "number") return number(value, 6);
   const written = typeof value === "string" ? value : JSON.stringify(value);
   return written.length > 40 ? `${written.slice(0, 39)}…` : written;

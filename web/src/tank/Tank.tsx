@@ -2,7 +2,7 @@
 
 import type { RefObject } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { Tank as Tankful } from "../api/types";
+import type { Tank as Tankful, Run, Tank } from "../api/types";
 import type { PoseStream } from "../decode/poses";
 import { useClock } from "../replay/clock";
 import { type ReadBatch, type Visible, readTankBatch, usePoses } from "../store/poses";
@@ -10,13 +10,13 @@ import { navigate } from "../store/router";
 import { useStore } from "../store/store";
 import { useTank } from "../store/tank";
 import { type Size, prefersReducedMotion, px, useOnScreen, useSize } from "../ui/canvas";
-import { labelOf, number } from "../ui/format";
+import { labelOf, number, duration } from "../ui/format";
 import { drawTank, drawTrails } from "./drawTank";
 import { openExample, readExampleBatch, useExamples } from "./examples";
 import { type Swimmer, advance, nearestScale, swimmerAt, withSwimmers } from "./swimmers";
-import { TankLine } from "./TankLine";
 import { text } from "./text";
 import "./tank.css";
+import { timeOf } from "../run/RunStatus";
 
 /** A phone shows fewer creatures. */
 const [MOST, ON_A_PHONE, PHONE] = [60, 30, 640];
@@ -42,7 +42,7 @@ export function Tank() {
   );
 }
 
-/** How the motions of creatures are read, and what opens one. */
+/** A source of creatures: it reads their motions and opens one. */
 interface Source {
   readBatch: ReadBatch<Visible>;
   onOpen: (creature: string) => void;
@@ -202,7 +202,7 @@ function Pointed({ tank, creature, scene }: PointedProps) {
   );
 }
 
-/** What stands in a tank without elites. */
+/** The note in a tank without elites. */
 function Begun({ examples }: { examples: boolean }) {
   const first = useStore(({ runs }) => [...runs.values()].find(({ status }) => status in text.begun));
   const [title, hint] = text.begun[first?.status as "running" | "queued"] ?? text.nothing;
@@ -213,5 +213,39 @@ function Begun({ examples }: { examples: boolean }) {
       {reason && <p>{reason}</p>}
       {examples && <p>{text.examples}</p>}
     </div>
+  );
+}
+
+/** One line over the tank: what evolves, and how far it is. */
+function TankLine({ tank }: { tank: Tank }) {
+  const runs = useStore((state) => state.runs);
+  const running = [...runs.values()].filter(({ status }) => status === "running");
+  const first = running.sort((a, b) => b.created_at.localeCompare(a.created_at))[0];
+  if (!first && tank.swimmers.length === 0) return null;
+  return (
+    <p class="tank-line">
+      {first ? (
+        <Evolving run={first} others={running.length - 1} />
+      ) : (
+        text.still(tank.swimmers.length, new Set(tank.swimmers.map(({ run }) => run)).size)
+      )}
+    </p>
+  );
+}
+
+function Evolving({ run, others }: { run: Run; others: number }) {
+  const { generation, generations, evaluations_per_second: rate } = run;
+  const facts = [text.progress(generation, generations)];
+  if (rate) facts.push(text.rate(number(rate)));
+  if (run.eta_seconds !== null && timeOf(run).text !== "–") facts.push(text.left(duration(run.eta_seconds)));
+  if (others > 0) facts.push(text.more(others));
+  return (
+    <>
+      <span class="ripple small-ripple" aria-hidden="true" />
+      <span>
+        <a href={`/runs/${run.id}`}>{labelOf(run)}</a> {text.evolves}
+      </span>
+      <span class="tank-facts">{facts.join(" · ")}</span>
+    </>
   );
 }

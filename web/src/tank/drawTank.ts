@@ -11,7 +11,7 @@ const [FAR, NEAR, POINTED] = [
   [253, 248, 236],
   [255, 206, 130],
 ] as const;
-/** How elaborately creatures are drawn. */
+/** The details with which creatures are drawn. */
 interface Style {
   /** A body is drawn several times, from its glow to its core: width and opacity. */
   strokes: readonly (readonly [width: number, opacity: number])[];
@@ -108,7 +108,7 @@ function drawSwimmer(
   if (one.age < ENTERING) drawRipple(context, one, scale);
 }
 
-/** From 0 to 1: small and faint while it enters or leaves. */
+/** Presence from 0 to 1: a creature is small and faint while it enters or leaves. */
 function presenceOf({ age, leaving }: Swimmer): number {
   const entering = Math.min(1, age / ENTERING);
   const staying = leaving === null ? 1 : Math.max(0, 1 - leaving / LEAVING);

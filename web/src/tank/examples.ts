@@ -6,7 +6,7 @@ import { openCreature } from "../ui/DropTarget";
 import creaturesUrl from "./examples/creatures.json?url&no-inline";
 import motionsUrl from "./examples/motions.poses?url&no-inline";
 
-/** What the page reads of their creature files. */
+/** The fields of their creature files that the page reads. */
 interface Example {
   sha256: string;
   measured: { fitness: number };

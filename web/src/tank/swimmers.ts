@@ -90,7 +90,7 @@ export function withSwimmers(
   return found.sort((a, b) => a.depth - b.depth);
 }
 
-/** Of some places that belong to a creature, the one farthest from all others. */
+/** The place farthest from all others, among some that belong to a creature. */
 function roomiest(creature: string, others: readonly Swimmer[], { width, height }: Size): Point {
   let [best, room]: [Point, number] = [[width / 2, height / 2], -1];
   for (let i = 0; i < CANDIDATES; i++) {

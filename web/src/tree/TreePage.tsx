@@ -1,4 +1,4 @@
-/** The pages of the tree of life: of a run, and of a creature across runs. */
+/** The pages of the tree of life: of a run, of a creature across runs, and of a shared creature. */
 
 import { useEffect } from "preact/hooks";
 import * as api from "../api/client";
@@ -100,5 +100,31 @@ export function LoadedTree({ of, self, value, error, query, isEmpty = false }: L
       {!value && !error && <Loading />}
       {value && <TreeView buffer={value} {...{ of, self, query }} />}
     </>
+  );
+}
+
+interface SharedTreePageProps {
+  slug: string;
+  /** A creature of a shared archive. */
+  sha: string | null;
+  query: URLSearchParams;
+}
+
+export function SharedTreePage({ slug, sha, query }: SharedTreePageProps) {
+  const { value, error } = useFetched(async () => {
+    const share = await api.readShare(slug);
+    const self = sha ?? share.cover;
+    return { share, self, tree: await api.readCreaturePhylogeny(self) };
+  }, [slug, sha]);
+  useTitle(value && `${text.title}, ${value.share.title}`);
+  if (!value) {
+    return <Page loading={!error}>{error && <NotFound what={text.title} reason={error} />}</Page>;
+  }
+  const { share, self, tree } = value;
+  return (
+    <Page crumbs={[[`/s/${slug}${sha ? `/creatures/${sha}` : ""}`, share.title]]}>
+      <Title id={self} />
+      <LoadedTree of={`/creatures/${self}`} value={tree} {...{ self, query, error }} />
+    </Page>
   );
 }

@@ -2,23 +2,22 @@
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { sharedSlug } from "../api/address";
-import { NONE, indexOf, isElite, nameAt } from "../decode/phylogeny";
-import { TimeSlider } from "../replay/TimeSlider";
+import { type Phylogeny, NONE, indexOf, isElite, nameAt, decodePhylogeny } from "../decode/phylogeny";
+import { TimeSlider } from "../replay/timeControls";
 import { readTankBatch, usePoses } from "../store/poses";
 import { navigate, setQuery } from "../store/router";
-import { useTheme } from "../ui/canvas";
+import { useTheme, useSize } from "../ui/canvas";
 import { count } from "../ui/format";
-import { useGestures } from "./gestures";
-import { press } from "./keys";
+import { press, useGestures } from "./gestures";
 import type { Landmark } from "./landmarks";
 import { type ColourBy, shadesOf } from "./shades";
-import type { Shown, Stage } from "./stage";
+import { type Shown, Stage } from "./stage";
 import { svgOf } from "./svg";
-import { TreeControls } from "./TreeControls";
+import { TreeLegend, TreeControls } from "./TreeControls";
 import { TreeCreature } from "./TreeCreature";
-import { TreeLegend } from "./TreeLegend";
-import { type Elements, type LoadedTree, type TreeCanvases, useArranged, useCanvases } from "./useTree";
 import { text } from "./text";
+import type { RefObject } from "preact";
+import { type Arranged, type Painter, startPainter } from "./painter";
 
 interface Props {
   buffer: ArrayBuffer;
@@ -74,7 +73,7 @@ const selfPage = () => location.pathname.replace(/\/tree\/?$/, "");
 
 type ShownView = ReturnType<typeof useShown>;
 
-/** What the address, the slider and the pointer choose, passed on to the stage. */
+/** The choices of the address, the slider and the pointer, passed on to the stage. */
 function useShown(loaded: LoadedTree | null, canvases: TreeCanvases, query: URLSearchParams, self?: string) {
   const theme = useTheme();
   const [at, setAt] = useState<number | null>(null);
@@ -184,4 +183,62 @@ function Summary({ tree, layout }: LoadedTree) {
       {alone} {text.hint}
     </p>
   );
+}
+
+interface Elements {
+  port: RefObject<HTMLDivElement | null>;
+  picture: RefObject<HTMLCanvasElement | null>;
+  overlay: RefObject<HTMLCanvasElement | null>;
+}
+
+/** A tree with the rows of its creatures. */
+export interface LoadedTree extends Arranged {
+  tree: Phylogeny;
+}
+
+type TreeCanvases = ReturnType<typeof useCanvases>;
+
+/** The stage on the canvases and the worker that paints for it. */
+function useCanvases({ port, picture, overlay }: Elements) {
+  const parts = useRef<{ stage: Stage; painter: Painter } | null>(null);
+  const arranged = useRef<(found: Arranged) => void>(() => {});
+  const [zoom, setZoom] = useState(0);
+  const [landmarks, setLandmarks] = useState<Landmark[]>([]);
+  const [error, setError] = useState<string | null>(null);
+  const size = useSize(port);
+  useEffect(() => {
+    const stage = new Stage({ picture: picture.current!, overlay: overlay.current! }, (zoom, landmarks) => {
+      setZoom(zoom);
+      setLandmarks(landmarks);
+    });
+    const painter = startPainter({
+      arranged: (found) => arranged.current(found),
+      painted: (picture, bitmap) => stage.painted(picture, bitmap),
+      failed: setError,
+    });
+    parts.current = { stage, painter };
+    return () => {
+      stage.stop();
+      painter.stop();
+    };
+  }, []);
+  useEffect(() => parts.current!.stage.resize(size), [size]);
+  return { parts, arranged, zoom, landmarks, error };
+}
+
+/** Arrange the columns of a tree; null until that is done the first time. */
+function useArranged(
+  buffer: ArrayBuffer,
+  survivors: boolean,
+  { parts, arranged }: TreeCanvases,
+): LoadedTree | null {
+  const [loaded, setLoaded] = useState<LoadedTree | null>(null);
+  const sent = useRef<ArrayBuffer | null>(null);
+  useEffect(() => {
+    const tree = decodePhylogeny(buffer);
+    arranged.current = (found) => setLoaded({ tree, ...found });
+    parts.current!.painter.arrange({ buffer: sent.current === buffer ? undefined : buffer, survivors });
+    sent.current = buffer;
+  }, [buffer, survivors]);
+  return loaded;
 }

@@ -66,7 +66,7 @@ function firstParents({ links, count }: Phylogeny): Int32Array {
   return parent;
 }
 
-/** What ancestors have of their descendants; a parent comes before its children. */
+/** Sums over the descendants of each creature; a parent comes before its children. */
 function sums({ time, count }: Phylogeny, parent: Int32Array, shown?: Uint8Array) {
   const [rows, size, children] = [new Int32Array(count), new Int32Array(count), new Int32Array(count)];
   const last = time.slice();

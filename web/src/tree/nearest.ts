@@ -27,7 +27,7 @@ export function nearest(
       const i = byRow[k]!;
       if (time[i]! > moment + times || time[i]! > at) break;
       const distance = Math.hypot((time[i]! - moment) / times, (r - row) / rows);
-      // Where many are as near, the one with the most descendants is meant.
+      // Of several equally near creatures, people mean the one with the most descendants.
       const better = distance < bestDistance - 1e-9 || descendants[i]! > 4 * (descendants[best] ?? Infinity);
       if (distance <= 1 && (best === NONE || better)) [best, bestDistance] = [i, distance];
     }

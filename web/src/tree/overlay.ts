@@ -1,4 +1,4 @@
-/** What moves or follows the pointer above the picture of a tree: bodies, a line of descent, the axis. */
+/** The moving parts above the picture of a tree: bodies, a line of descent, the axis. */
 
 import { type Phylogeny, NONE, nameAt } from "../decode/phylogeny";
 import type { PoseStream } from "../decode/poses";
@@ -10,7 +10,7 @@ import { count, number, shortId } from "../ui/format";
 import type { Landmark } from "./landmarks";
 import type { TreeLayout } from "./layout";
 import { lineOf, otherParents } from "./nearest";
-import { INKS, traceEdge } from "./paint";
+import { type Context, INKS, traceEdge } from "./paint";
 import type { Shades } from "./shades";
 import { text } from "./text";
 import { type Place, type Scales, type View, MARGIN, placeOf } from "./view";
@@ -30,7 +30,7 @@ export interface Overlay {
   focus: number;
   /** Simulated steps so far. */
   steps: number;
-  /** When each run began. */
+  /** The time at which each run began. */
   begins: readonly number[];
 }
 
@@ -41,7 +41,7 @@ const MAX_TICKS = 9;
 const NAMED = 96;
 
 /** Draw over a cleared canvas. */
-export function drawOverlay(context: CanvasRenderingContext2D, scene: Overlay): void {
+export function drawOverlay(context: Context, scene: Overlay): void {
   context.font = FONT;
   context.lineJoin = context.lineCap = "round";
   const place = (i: number) =>
@@ -54,8 +54,8 @@ export function drawOverlay(context: CanvasRenderingContext2D, scene: Overlay): 
   if (scene.focus !== NONE) drawLabel(context, scene, place(scene.focus));
 }
 
-/** Where the runs of other creatures begin, if there are several, and the time shown. */
-function drawBoundaries(context: CanvasRenderingContext2D, scene: Overlay): void {
+/** Lines at the beginnings of several runs, and at the time shown. */
+function drawBoundaries(context: Context, scene: Overlay): void {
   const { tree, view, scales, size, theme, begins, at } = scene;
   const xOf = (time: number) => placeOf({ time, row: 0 }, scales, view, size)[0];
   context.lineWidth = 1;
@@ -72,7 +72,7 @@ function drawBoundaries(context: CanvasRenderingContext2D, scene: Overlay): void
   if (at < view.time + size.width / 2 / scales.x) dashed(context, xOf(at), size.height - AXIS);
 }
 
-function dashed(context: CanvasRenderingContext2D, x: number, height: number): void {
+function dashed(context: Context, x: number, height: number): void {
   context.setLineDash([2, 4]);
   context.beginPath();
   context.moveTo(x, 0);
@@ -83,7 +83,7 @@ function dashed(context: CanvasRenderingContext2D, x: number, height: number): v
 
 /** The line of first parents in the ink of the page; links to second parents faintly. */
 function drawLine(
-  context: CanvasRenderingContext2D,
+  context: Context,
   { tree, layout, theme }: Overlay,
   line: readonly number[],
   place: (i: number) => Place,
@@ -119,8 +119,8 @@ function drawLine(
 }
 
 /** A creature in a drop of water, with a rim in its colour; without a pose stream there is no drop. */
-export function drawBody(
-  context: CanvasRenderingContext2D,
+function drawBody(
+  context: Context,
   { tree, theme, shades, poses, focus, steps }: Overlay,
   { creature, side }: Landmark,
   [x, y]: Place,
@@ -144,7 +144,7 @@ export function drawBody(
   context.stroke();
 }
 
-function drawAxis(context: CanvasRenderingContext2D, { view, scales, size, theme }: Overlay): void {
+function drawAxis(context: Context, { view, scales, size, theme }: Overlay): void {
   const { ground, quiet } = INKS[theme];
   const half = size.width / 2 / scales.x;
   const [low, high] = [view.time - half, view.time + half];
@@ -168,11 +168,7 @@ function drawAxis(context: CanvasRenderingContext2D, { view, scales, size, theme
 }
 
 /** A ring around the focus, with its name and fitness beside it. */
-function drawLabel(
-  context: CanvasRenderingContext2D,
-  { tree, size, theme, focus, landmarks }: Overlay,
-  [x, y]: Place,
-): void {
+function drawLabel(context: Context, { tree, size, theme, focus, landmarks }: Overlay, [x, y]: Place): void {
   const { ink, ground } = INKS[theme];
   if (!landmarks.some(({ creature }) => creature === focus)) {
     context.beginPath();

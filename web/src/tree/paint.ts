@@ -5,7 +5,13 @@ import type { Theme } from "../ui/canvas";
 import { type Shades, type Shape, radiusOf, shapeOf } from "./shades";
 import { type Strokes, WIDTHS, bendOf, lineIndex } from "./strokes";
 
-type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+/** A surface that trees are drawn on: a canvas, one of a worker, or SVG. */
+export type Context = Pick<
+  CanvasRenderingContext2D,
+  | ("beginPath" | "moveTo" | "lineTo" | "bezierCurveTo" | "arc" | "rect" | "roundRect" | "closePath")
+  | ("fill" | "stroke" | "fillRect" | "fillText" | "setLineDash" | "fillStyle" | "strokeStyle")
+  | ("lineWidth" | "lineCap" | "lineJoin" | "globalAlpha" | "font" | "textAlign" | "textBaseline")
+> & { measureText: (text: string) => { width: number } };
 
 export const INKS = {
   light: { ink: "#14222b", quiet: "#5a6b76", ground: "#eef5f6" },
@@ -77,7 +83,7 @@ function paintDots(context: Context, { dots }: Strokes, tree: Phylogeny, shades:
 
 type DotPath = Pick<CanvasPath, "moveTo" | "lineTo" | "arc" | "rect" | "closePath">;
 
-export function traceDot(context: DotPath, shape: Shape, x: number, y: number, radius: number): void {
+function traceDot(context: DotPath, shape: Shape, x: number, y: number, radius: number): void {
   const r = radius * 1.15;
   if (shape === "circle") context.arc(x, y, radius, 0, 2 * Math.PI);
   else if (shape === "square") context.rect(x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);

@@ -25,7 +25,7 @@ import {
   zoomed,
 } from "./view";
 
-/** What the page chooses to show. */
+/** The choices of the page. */
 export interface Shown {
   /** The latest time that is drawn. */
   at: number;

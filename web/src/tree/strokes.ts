@@ -1,5 +1,5 @@
 /**
- * What a view shows of a tree, as lines and dots in pixels. A subtree of less than a pixel is one line, and
+ * Lines and dots, in pixels, of the part of a tree that a view shows. A subtree of less than a pixel is one line, and
  * lines that cover each other are drawn once: the work grows with the window, not with the tree.
  */
 
@@ -83,7 +83,7 @@ export function strokesOf(scene: Scene): Strokes {
   return found;
 }
 
-export function widthOf(size: number): number {
+function widthOf(size: number): number {
   let width = 0;
   while (width < SIZES.length && size >= SIZES[width]!) width++;
   return width;

@@ -1,162 +1,122 @@
-/** The present view of a tree as SVG. */
+/** The present view of a tree as SVG: what is drawn on canvases, drawn on one context that writes it. */
 
-import { NONE, isElite, nameAt } from "../decode/phylogeny";
-import { BODY_INK } from "../replay/motion";
-import { traceBody } from "../replay/poses";
-import { shortId } from "../ui/format";
-import { lineOf, otherParents } from "./nearest";
-import type { Overlay } from "./overlay";
-import { INKS, traceDot, traceEdge } from "./paint";
 import type { Chains } from "./layout";
-import { radiusOf, shapeOf } from "./shades";
-import { type Strokes, WIDTHS, lineIndex, strokesOf } from "./strokes";
-import { placeOf } from "./view";
+import { type Overlay, drawOverlay } from "./overlay";
+import { type Context, INKS, paint } from "./paint";
+import { strokesOf } from "./strokes";
 
 type Scene = Overlay & { chains: Chains; whole: boolean };
 
 export function svgOf(scene: Scene): string {
-  const { tree, size, theme, shades } = scene;
+  const { tree, theme, shades } = scene;
+  const context = new SvgContext();
   const strokes = strokesOf({ ...scene, shade: shades.shade, shades: shades.colours.length });
-  const { ink, ground, quiet } = INKS[theme];
-  const line = scene.focus === NONE ? [] : lineOf(scene.layout, scene.focus);
-  const others = otherParents(tree, scene.layout, line);
-  const steps = line.slice(1).map((parent, k): [number, number] => [line[k]!, parent]);
-  const counts = strokes.counts.flatMap((_, k, all) =>
-    k % 3 ? [] : [`<text x="${fixed(all[k]!)}" y="${fixed(all[k + 1]! - 4)}">+${all[k + 2]!}</text>`],
-  );
+  paint(context, strokes, tree, shades, theme);
+  drawOverlay(context, scene);
+  const [width, height] = [fixed(scene.size.width), fixed(scene.size.height)];
+  const lines = 'stroke-linecap="round" stroke-linejoin="round" font-family="system-ui, sans-serif"';
   return [
-    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${fixed(size.width)} ${fixed(size.height)}" width="${fixed(size.width)}" height="${fixed(size.height)}">`,
-    `<rect width="100%" height="100%" fill="${ground}"/>`,
-    `<g fill="none" stroke-linecap="round" stroke-linejoin="round">`,
-    ...edges(strokes, scene),
-    pathTag(links(others, scene), `stroke="${ink}" stroke-opacity="0.4" stroke-dasharray="3 4"`),
-    pathTag(links(steps, scene), `stroke="${ink}" stroke-width="2.4"`),
-    ...dots(strokes, scene),
-    ...bodies(scene),
-    "</g>",
-    `<g font-family="system-ui, sans-serif" font-size="11" fill="${quiet}" text-anchor="middle">`,
-    ...counts,
-    "</g>",
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}" ${lines}>`,
+    `<rect width="100%" height="100%" fill="${INKS[theme].ground}"/>`,
+    ...context.tags,
     "</svg>",
   ].join("\n");
 }
 
 const fixed = (value: number) => String(Math.round(10 * value) / 10);
 
-const pathTag = (d: string, attributes: string) => (d ? `<path d="${d}" ${attributes}/>` : "");
+const ANCHORS: Partial<Record<CanvasTextAlign, string>> = { center: "middle", right: "end" };
+const BASELINES: Partial<Record<CanvasTextBaseline, string>> = { middle: "middle", top: "hanging" };
+/** The width of a letter, as a share of the size of its font: nothing measures text here. */
+const LETTER = 0.55;
 
-function edges({ lines }: Strokes, { shades: { colours } }: Scene): string[] {
-  return WIDTHS.flatMap((width, k) =>
-    colours.map((colour, shade) => {
-      const line = lines[lineIndex(k, shade, colours.length)]!;
-      const path = new PathWriter();
-      for (let i = 0; i < line.length; i += 4) {
-        traceEdge(path, line[i]!, line[i + 1]!, line[i + 2]!, line[i + 3]!);
-      }
-      return pathTag(path.d, `stroke="${colour}" stroke-width="${width}"`);
-    }),
-  ).filter(Boolean);
-}
-
-function links(pairs: readonly [number, number][], scene: Scene): string {
-  const path = new PathWriter();
-  const place = (i: number) =>
-    placeOf({ time: scene.tree.time[i]!, row: scene.layout.row[i]! }, scene.scales, scene.view, scene.size);
-  for (const [child, parent] of pairs) traceEdge(path, ...place(parent), ...place(child));
-  return path.d;
-}
-
-function dots({ dots }: Strokes, { tree, shades, theme }: Scene): string[] {
-  const tags: string[] = [];
-  for (let k = 0; k < dots.length; k += 3) {
-    const i = dots[k + 2]!;
-    const path = new PathWriter();
-    const shape = shades.by === "operator" ? shapeOf(tree, tree.operator[i]!) : "circle";
-    traceDot(path, shape, dots[k]!, dots[k + 1]!, radiusOf(shades, i));
-    const colour = shades.colours[shades.shade[i]!]!;
-    const fill = isElite(tree, i) ? colour : INKS[theme].ground;
-    const title = `<title>${shortId(nameAt(tree, i))}</title>`;
-    tags.push(`<path d="${path.d}" fill="${fill}" stroke="${colour}" stroke-width="1.4">${title}</path>`);
-  }
-  return tags;
-}
-
-function bodies({
-  tree,
-  landmarks,
-  layout,
-  poses,
-  shades,
-  theme,
-  steps,
-  view,
-  scales,
-  size,
-}: Scene): string[] {
-  return landmarks.flatMap(({ creature, side }) => {
-    const stream = poses.get(nameAt(tree, creature));
-    if (!stream) return [];
-    const [x, y] = placeOf({ time: tree.time[creature]!, row: layout.row[creature]! }, scales, view, size);
-    const path = new PathWriter();
-    const inner = side * 0.86;
-    traceBody(path, stream, steps, [x - inner / 2, y - inner / 2, inner]);
-    const colour = shades.colours[shades.shade[creature]!]!;
-    return [
-      `<circle cx="${fixed(x)}" cy="${fixed(y)}" r="${fixed(side / 2)}" fill="${INKS[theme].ground}" fill-opacity="0.95" stroke="${colour}" stroke-width="1.5"/>`,
-      pathTag(path.d, `stroke="${BODY_INK[theme]}" stroke-width="${fixed(Math.max(1.3, side / 34))}"`),
-    ];
-  });
-}
-
-/** Writes what is traced on it as the data of an SVG path. */
-export class PathWriter {
-  private parts: string[] = [];
-
-  get d(): string {
-    return this.parts.join("");
-  }
+/** The part of a canvas context that draws trees, as tags of SVG. */
+export class SvgContext implements Context {
+  readonly tags: string[] = [];
+  fillStyle = "";
+  strokeStyle = "";
+  lineWidth = 1;
+  lineCap: CanvasLineCap = "round";
+  lineJoin: CanvasLineJoin = "round";
+  globalAlpha = 1;
+  font = "";
+  textAlign: CanvasTextAlign = "left";
+  textBaseline: CanvasTextBaseline = "top";
+  private dash: readonly number[] = [];
+  /** The data of the present path. */
+  d = "";
 
   beginPath(): void {
-    this.parts = [];
+    this.d = "";
   }
 
   moveTo(x: number, y: number): void {
-    this.write("M", x, y);
+    this.add("M", x, y);
   }
 
   lineTo(x: number, y: number): void {
-    this.write("L", x, y);
+    this.add("L", x, y);
   }
 
   bezierCurveTo(...points: [number, number, number, number, number, number]): void {
-    this.write("C", ...points);
+    this.add("C", ...points);
   }
 
   rect(x: number, y: number, width: number, height: number): void {
-    this.parts.push(`M${fixed(x)} ${fixed(y)}h${fixed(width)}v${fixed(height)}h${fixed(-width)}z`);
+    this.d += `M${fixed(x)} ${fixed(y)}h${fixed(width)}v${fixed(height)}h${fixed(-width)}z`;
+  }
+
+  /** A rectangle, whose corners stay sharp. */
+  roundRect(x: number, y: number, width = 0, height = 0): void {
+    this.rect(x, y, width, height);
   }
 
   /** A whole circle. */
   arc(x: number, y: number, radius: number): void {
     const r = fixed(radius);
-    this.write("M", x - radius, y);
-    this.parts.push(`a${r} ${r} 0 1 1 ${fixed(2 * radius)} 0a${r} ${r} 0 1 1 ${fixed(-2 * radius)} 0z`);
+    this.add("M", x - radius, y);
+    this.d += `a${r} ${r} 0 1 1 ${fixed(2 * radius)} 0a${r} ${r} 0 1 1 ${fixed(-2 * radius)} 0z`;
   }
 
   closePath(): void {
-    this.parts.push("z");
+    this.d += "z";
   }
 
-  private write(command: string, ...numbers: number[]): void {
-    this.parts.push(command + numbers.map(fixed).join(" "));
+  setLineDash(dash: readonly number[]): void {
+    this.dash = dash;
   }
-}
 
-/** Save a text that the page made as a file. */
-export function saveText(text: string, name: string, type: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  stroke(): void {
+    const dash = this.dash.length > 0 ? ` stroke-dasharray="${this.dash.join(" ")}"` : "";
+    this.path(`fill="none" stroke="${this.strokeStyle}" stroke-width="${fixed(this.lineWidth)}"${dash}`);
+  }
+
+  fill(): void {
+    this.path(`fill="${this.fillStyle}"`);
+  }
+
+  fillRect(x: number, y: number, width: number, height: number): void {
+    const [left, top] = [fixed(x), fixed(y)];
+    const box = `x="${left}" y="${top}" width="${fixed(width)}" height="${fixed(height)}"`;
+    this.tags.push(`<rect ${box} fill="${this.fillStyle}" opacity="${this.globalAlpha}"/>`);
+  }
+
+  measureText(text: string): { width: number } {
+    return { width: LETTER * parseFloat(this.font) * text.length };
+  }
+
+  fillText(text: string, x: number, y: number): void {
+    const anchor = ANCHORS[this.textAlign] ?? "start";
+    const place = `x="${fixed(x)}" y="${fixed(y)}" text-anchor="${anchor}"`;
+    const look = `font-size="${parseFloat(this.font)}" dominant-baseline="${BASELINES[this.textBaseline]}"`;
+    this.tags.push(`<text ${place} ${look} fill="${this.fillStyle}">${text}</text>`);
+  }
+
+  private add(command: string, ...numbers: number[]): void {
+    this.d += command + numbers.map(fixed).join(" ");
+  }
+
+  private path(look: string): void {
+    if (this.d) this.tags.push(`<path d="${this.d}" ${look} opacity="${this.globalAlpha}"/>`);
+  }
 }

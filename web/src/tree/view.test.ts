@@ -1,12 +1,12 @@
 import { describe, expect, it } from "vitest";
 import { NONE } from "../decode/phylogeny";
-import { press } from "./keys";
+import { press } from "./gestures";
 import { landmarksOf, ranked } from "./landmarks";
 import { chainsOf, layoutOf, surviving } from "./layout";
 import { lineOf, nearest, otherParents, relativeAt } from "./nearest";
 import { shadesOf } from "./shades";
 import { strokesOf } from "./strokes";
-import { PathWriter } from "./svg";
+import { SvgContext } from "./svg";
 import { grownTree, treeOf } from "./tree.fixture";
 import { clamped, extentOf, moved, placeOf, scalesOf, whole, zoomFor, zoomOf, zoomed } from "./view";
 
@@ -213,11 +213,22 @@ describe("landmarks", () => {
 
 describe("a path of SVG", () => {
   it("has what is traced on it", () => {
-    const path = new PathWriter();
+    const path = new SvgContext();
     path.moveTo(1.26, 2);
     path.lineTo(3, -4);
     path.bezierCurveTo(1, 2, 3, 4, 5, 6);
     path.closePath();
     expect(path.d).toBe("M1.3 2L3 -4C1 2 3 4 5 6z");
+  });
+
+  it("is drawn with the styles of a canvas", () => {
+    const context = new SvgContext();
+    Object.assign(context, { strokeStyle: "#123", lineWidth: 2, globalAlpha: 0.5 });
+    context.moveTo(0, 0);
+    context.setLineDash([3, 4]);
+    context.stroke();
+    expect(context.tags).toEqual([
+      '<path d="M0 0" fill="none" stroke="#123" stroke-width="2" stroke-dasharray="3 4" opacity="0.5"/>',
+    ]);
   });
 });

@@ -18,7 +18,7 @@ export interface Scales {
   y: number;
 }
 
-/** What the scales of a tree depend on. */
+/** The size of a tree, on which its scales depend. */
 export interface Extent {
   firstTime: number;
   lastTime: number;

@@ -3,7 +3,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { importCreature } from "../api/client";
-import { importPage } from "../api/shareAddress";
+import { importPage } from "../api/address";
 import { messageOf } from "../api/problem";
 import { showToast } from "../store/toasts";
 import { useListener } from "../store/polling";

@@ -1,8 +1,9 @@
-/** A title that shows the definition of its term in docs/glossary.md. */
+/** A title that shows the definition of its term in docs/glossary.md, or the meaning of its measure. */
 
 import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
 import { px } from "./canvas";
+import { aboutOf } from "./measures";
 
 const MAX_WIDTH_PX = 320;
 
@@ -17,7 +18,8 @@ const showAbove = (popover: HTMLElement | null) => popover?.showPopover();
 
 /** Additions, plurals and units are ignored: “Evaluations/s” is explained as “evaluation”. */
 export function Term({ name, children }: Props) {
-  const about = define(name) ?? define(name.replace(/ (of|so far|\().*$/, "").replace(/s?(\/s)?$/, ""));
+  const plain = name.replace(/ (of|so far|\().*$/, "").replace(/s?(\/s)?$/, "");
+  const about = define(name) ?? aboutOf(name) ?? define(plain);
   const [place, setPlace] = useState<{ left: number; top: number } | null>(null);
   const id = useId();
   if (!about) return <>{children ?? name}</>;

@@ -1,6 +1,7 @@
 /** Formats of numbers, times and names. */
 
-import type { Experiment, Json, Run, Spec } from "../api/types";
+import type { Experiment, Run, Spec } from "../api/types";
+import { canonical } from "../decode/canonical";
 import { text } from "./text";
 
 export const DASH = "–";
@@ -11,8 +12,11 @@ export function number(value: number | null | undefined, digits = 3): string {
   if (size !== 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, digits - 1);
   const wholeDigits = Math.floor(Math.log10(Math.max(size, 1))) + 1;
   const maximumSignificantDigits = Math.max(digits, wholeDigits);
-  return value.toLocaleString("en", { maximumSignificantDigits }).replace("-", "−");
+  return plain(value, { maximumSignificantDigits }).replace("-", "−");
 }
+
+/** In the language of the page; without the sign of −0. */
+const plain = (value: number, options = {}) => (value === 0 ? 0 : value).toLocaleString("en", options);
 
 const SUPERSCRIPT: Record<string, string> = Object.fromEntries(
   [..."-0123456789"].map((digit, i) => [digit, [..."⁻⁰¹²³⁴⁵⁶⁷⁸⁹"][i]!]),
@@ -26,7 +30,7 @@ export function scientific(value: number, digits = 1): string {
 }
 
 export function count(value: number | null | undefined): string {
-  return value == null ? DASH : Math.round(value).toLocaleString("en");
+  return value == null ? DASH : plain(Math.round(value));
 }
 
 export function bytes(value: number): string {
@@ -36,7 +40,9 @@ export function bytes(value: number): string {
 }
 
 export function percent(value: number | null | undefined): string {
-  return value == null ? DASH : `${number(100 * value)} %`;
+  if (value == null) return DASH;
+  const hundredths = 100 * value;
+  return `${number(value < 1 ? Math.min(hundredths, 99.9) : hundredths)} %`; // 100 % is all of it.
 }
 
 export function duration(seconds: number | null): string {
@@ -60,11 +66,10 @@ export function shortId(id: string): string {
   return id.slice(0, 8);
 }
 
+export const capitalised = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** `bending_effort` as words. */
-export function words(name: string): string {
-  const spaced = name.replaceAll("_", " ");
-  return spaced.charAt(0).toUpperCase() + spaced.slice(1);
-}
+export const words = (name: string) => capitalised(name.replaceAll("_", " "));
 
 /** The name of a run, or of its preset with any seed, or of its experiment. */
 export function titleOf(run: Run, experiments: Experiment[]): string {
@@ -89,14 +94,7 @@ const SEEDLESS = new WeakMap<Spec, string>();
 function seedless(spec: Spec): string {
   const known = SEEDLESS.get(spec);
   if (known !== undefined) return known;
-  const json = JSON.stringify(sorted({ ...spec, seed: 0 }));
+  const json = canonical({ ...spec, seed: 0 });
   SEEDLESS.set(spec, json);
   return json;
-}
-
-function sorted(value: Json): Json {
-  if (Array.isArray(value)) return value.map(sorted);
-  if (value === null || typeof value !== "object") return value;
-  const keys = Object.keys(value).sort();
-  return Object.fromEntries(keys.map((key) => [key, sorted(value[key]!)]));
 }

@@ -51,7 +51,7 @@ export function ForkLink({ run, creatures, cells, at = null, title, inline = fal
   );
 }
 
-/** So many creatures swim side by side. */
+/** The most creatures that swim side by side. */
 export const MAX_SIDE_BY_SIDE = 6;
 
 /** A link to two or more creatures side by side; nothing if they are too many. */

@@ -1,7 +1,8 @@
 import { describe, expect, it, vi } from "vitest";
 import type { Experiment, Run, Spec } from "../api/types";
 import { diverging, viridis } from "./colours";
-import { bytes, duration, labelOf, number, titleOf } from "./format";
+import { bytes, count, duration, labelOf, number, percent, titleOf } from "./format";
+import { aboutOf, groupOf, titleOf as titleOfMeasure, valueOf } from "./measures";
 import { define, parse } from "./Term";
 import { reasonOf } from "./Page";
 
@@ -32,9 +33,22 @@ describe("formats", () => {
     [98300000, "9.83 × 10⁷"],
     [0.0001, "10⁻⁴"],
     [-0.0343574, "−0.0344"],
+    [-0, "0"],
     [null, "–"],
   ])("write %j as %s", (value, text) => {
     expect(number(value)).toBe(text);
+  });
+
+  it("say 100 % of all alone, and count nothing without a sign", () => {
+    expect([1, 4095 / 4096, 0.9994, 0.5, 0, 1.2].map(percent)).toEqual([
+      "100 %",
+      "99.9 %",
+      "99.9 %",
+      "50 %",
+      "0 %",
+      "120 %",
+    ]);
+    expect([1234.5, -0.2].map(count)).toEqual(["1,235", "0"]);
   });
 
   it("of times and sizes are short", () => {
@@ -51,7 +65,7 @@ describe("formats", () => {
   it("of a run name its preset for any seed, or its experiment", () => {
     const spec: Spec = { seed: 0, world: { width: 32, height: 32 } };
     const presets = [{ name: "demo", title: "", spec }];
-    const known = [{ experiment: "quality-diversity", title: "", schema: {}, presets }];
+    const known = [{ experiment: "quality-diversity", title: "", about: "", schema: {}, presets }];
     const run = { experiment: "quality-diversity", demonstration: false } as Run;
     const same = { world: { height: 32, width: 32 }, seed: 9 };
     expect(titleOf({ ...run, spec: same }, known)).toBe("Demo");
@@ -109,6 +123,19 @@ describe("the glossary", () => {
   it("is that of the documentation", () => {
     expect(define("QD score")).toMatch(/^The sum of the fitness/);
     expect(define("Niche")).toBeUndefined();
+  });
+});
+
+describe("measures", () => {
+  it("have titles, units and meanings; those of plug-ins have their own", () => {
+    expect(titleOfMeasure("impulse")).toBe("Net impulse");
+    expect(valueOf("impulse", 0.25)).toBe("0.25 mass · cells/step");
+    expect(valueOf("crossing", 0.125)).toBe("12.5 %");
+    expect(aboutOf("Spread over trials")).toBe("Standard deviation of fitness over task.trials; 0 with one.");
+    const sway = { title: "Sway", unit: "cells" };
+    expect([titleOfMeasure("mine.sway", sway), valueOf("mine.sway", 2, sway)]).toEqual(["Sway", "2 cells"]);
+    expect([titleOfMeasure("some_number"), valueOf("some_number", 2)]).toEqual(["Some number", "2"]);
+    expect([groupOf("form_aspect"), groupOf("mine.sway")]).toEqual(["form", "result"]);
   });
 });
 

@@ -2,15 +2,18 @@
 
 import { useMemo, useState } from "preact/hooks";
 import { ArchiveMap } from "../archive/ArchiveMap";
-import { choicesOf } from "../archive/axes";
-import { coloursOf } from "../archive/colouring";
+import { choicesOf, axisOf, namesOf } from "../archive/axes";
+import { coloursOf, colourMeasure, colouringOf } from "../archive/colouring";
 import { ElitePreview } from "../archive/ElitePreview";
-import type { Elite } from "../store/elites";
+import { type Elite, type Elites, measuresOf, mergeElites } from "../store/elites";
 import { Select } from "../ui/Select";
-import { type Model, useField } from "./model";
+import { type Model, type Shown, useField } from "./model";
 import { useKept } from "./poses";
 import { text } from "./text";
-import { viewOf } from "./view";
+import { Delaunay } from "d3-delaunay";
+import { voronoiLayout } from "../archive/layout";
+import { project } from "../archive/projection";
+import { PALETTES } from "../ui/colours";
 
 export function MapWidget({ model }: { model: Model }) {
   const [archive] = useField(model, "_archive");
@@ -56,5 +59,36 @@ export function MapWidget({ model }: { model: Model }) {
       />
       <p class="quiet small about">{below.join(" · ")}</p>
     </>
+  );
+}
+
+interface Choice {
+  x: string | null;
+  y: string | null;
+  colour: string;
+}
+
+function viewOf(archive: Shown, { x, y, colour }: Choice) {
+  const elites: Elites = mergeElites(archive, new Map());
+  const measures = measuresOf({ ...archive, measures: archive.measures ?? {} });
+  const names = namesOf(archive, x, y);
+  const axes = [
+    axisOf(names[0], archive, elites, measures),
+    axisOf(names[1], archive, elites, measures),
+  ] as const;
+  const projection = project(elites, axes, [], cellsOf(archive, names));
+  const known = coloursOf(archive).some(([name]) => name === colour);
+  const measure = colourMeasure(known ? colour : "fitness", archive, measures, archive.generation);
+  const colouring = colouringOf(measure, PALETTES[0]!, projection.tiles);
+  return { elites, axes, projection, colouring };
+}
+
+/** The Voronoi cells, if both axes are those of the centroids. */
+function cellsOf({ axes, centroids }: Shown, names: readonly [string, string]) {
+  const [x, y] = names.map((name) => axes.findIndex((axis) => axis.name === name));
+  if (!centroids || axes.length !== 2 || x! < 0 || y! < 0) return null;
+  return voronoiLayout(
+    centroids.map((place) => [place[x!]!, 1 - place[y!]!] as const),
+    Delaunay,
   );
 }

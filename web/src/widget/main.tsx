@@ -8,9 +8,14 @@ import "../archive/archive.css";
 import "../replay/replay.css";
 import "./widget.css";
 import { MapWidget } from "./MapWidget";
-import type { Model } from "./model";
-import { PlayerWidget } from "./PlayerWidget";
+import { type Model, useField } from "./model";
 import { useTheme } from "../ui/canvas";
+import { useMemo } from "preact/hooks";
+import { decodeReplay } from "../decode/replay";
+import { LoopPlayer } from "../replay/LoopPlayer";
+import { SwimmingBody } from "../replay/SwimmingBody";
+import { useKept, usePoseStream } from "./poses";
+import { text } from "./text";
 
 function Widget({ model }: { model: Model }) {
   const Shown = model.get("_kind") === "map" ? MapWidget : PlayerWidget;
@@ -29,3 +34,26 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
 }
 
 export default { render };
+
+function PlayerWidget({ model }: { model: Model }) {
+  const [replay] = useField(model, "_replay");
+  const [poses] = useField(model, "_poses");
+  const [creature] = useField(model, "_creature");
+  const [about] = useField(model, "_about");
+  useKept(poses);
+  const { stream } = usePoseStream(creature);
+  const film = useMemo(() => replayOf(replay), [replay]);
+  return (
+    <>
+      {film ? (
+        <LoopPlayer replay={film} />
+      ) : (
+        <div class="strokes">{stream && <SwimmingBody stream={stream} label={text.strokes} path />}</div>
+      )}
+      <p class="quiet small about">{about}</p>
+    </>
+  );
+}
+
+const replayOf = ({ buffer, byteOffset, byteLength }: DataView) =>
+  byteLength > 0 ? decodeReplay((buffer as ArrayBuffer).slice(byteOffset, byteOffset + byteLength)) : null;

@@ -2,7 +2,7 @@
 
 const system = () => window.matchMedia("(prefers-color-scheme: dark)");
 
-/** What JupyterLab, VS Code and Colab say of their theme; null if nothing is known. */
+/** True for a dark theme of JupyterLab, VS Code or Colab; null if none is known. */
 function dark(): boolean | null {
   const { jpThemeLight, vscodeThemeKind } = document.body.dataset;
   if (jpThemeLight !== undefined) return jpThemeLight === "false";

@@ -36,7 +36,7 @@ function NoWorkers() {
           {text.noWorkersHint}
           <code>make run</code>
           {text.orBeside}
-          <code>python -m worker.supervisor</code>.
+          <code>python -m microcosmos_worker.supervisor</code>.
         </>
       }
     />

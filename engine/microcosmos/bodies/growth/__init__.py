@@ -1,18 +1,22 @@
-"""Bodies that grow from genes: plans, their growth, and the kinematics of what has grown."""
+"""Bodies that grow from genes: plans, their growth, and the kinematics of grown bodies."""
 
-from .body import Grown, State
-from .columns import plan_of
 from .form import form
-from .graph import grown_body, grown_length
-from .plan import LEAST_LIMB, LEAST_RING, LEAST_ROOT, Capacity, Plan
-from .random import (
+from .plan import (
     FIRST_LIMBS,
+    LEAST_LIMB,
+    LEAST_RING,
+    LEAST_ROOT,
     PLAN_DRAWS,
     SEGMENT_DRAWS,
     TYPES,
+    Capacity,
+    Grown,
+    Plan,
     Segments,
+    State,
+    plan_of,
     random_plan,
     random_segment,
 )
-from .skeleton import Skeleton, skeleton
+from .skeleton import Skeleton, grown_body, grown_length, skeleton
 from .sprouting import grow, sprout

@@ -11,12 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .body import Grown
-from .plan import Capacity
+from ..graph import Body
+from .plan import Capacity, Grown, Plan
+from .sprouting import grow
 
 
 class Skeleton(NamedTuple):
-    """A body of fixed sizes; what is absent belongs to the last node, which is empty."""
+    """A body of fixed sizes; absent edges and joints belong to the last, empty node."""
 
     edges: Any
     """(edge, 2)"""
@@ -24,10 +25,10 @@ class Skeleton(NamedTuple):
     """(joint, 2) edges."""
     driver: Any
     """(joint,) the node that commands it: the far one of its second edge."""
-    there: Any
-    """(edge,)"""
+    edge_present: Any
+    """(edge,) True if the edge exists."""
     bends: Any
-    """(joint,) whether it is there."""
+    """(joint,) True if the joint exists."""
     hand: Any
     """(joint,) −1 in mirror images, otherwise 1."""
     angle: Any
@@ -47,27 +48,26 @@ def skeleton(
 ) -> Skeleton:
     """Return the edges, joints and kinematics of a grown body of arrays of `xp`."""
     reals = grown.positions.dtype
-    edges, there, angle = _edges(grown, capacity, xp)
+    edges, edge_present, angle = _edges(grown, capacity, xp)
     joints, bends, driver = _joints(grown, capacity, xp)
     rest = _wrapped(angle[joints[:, 1]] - angle[joints[:, 0]], xp)
     return Skeleton(
         edges=edges,
         joints=joints,
         driver=driver,
-        there=there,
+        edge_present=edge_present,
         bends=bends,
         hand=grown.hand[driver],
-        angle=xp.where(there, angle, 0).astype(reals),
+        angle=xp.where(edge_present, angle, 0).astype(reals),
         rest_angle=xp.where(bends, rest, 0).astype(reals),
         stiffness=grown.stiffness[driver],
-        turned=_turned(grown, there, bends, xp, loop),
-        placed=_placed(grown, there, xp, loop),
+        turned=_turned(grown, edge_present, bends, xp, loop),
+        placed=_placed(grown, edge_present, xp, loop),
     )
 
 
 def _edges(grown: Grown, capacity: Capacity, xp: Any) -> tuple[Any, Any, Any]:
-    """Return the edges of all nodes but the first and of rings, which are there, and their
-    directions."""
+    """Return edges (to each node but the first, then of rings), their mask and directions."""
     nodes, empty = capacity.nodes, capacity.nodes - 1
     reals, node = grown.positions.dtype, xp.arange(nodes, dtype=np.int32)
     ring = grown.ring_first >= 0
@@ -84,8 +84,11 @@ def _edges(grown: Grown, capacity: Capacity, xp: Any) -> tuple[Any, Any, Any]:
 
 
 def _joints(grown: Grown, capacity: Capacity, xp: Any) -> tuple[Any, Any, Any]:
-    """Return the joints of a node's edge with the one before and those that close rings, which
-    are there, and their drivers. The root's other edges join its first."""
+    """Return joints, their mask and their driving nodes.
+
+    First come the joints of each node's edge with the edge before it, then those that close
+    rings. All edges at the first node join the root's first edge.
+    """
     nodes, rings, empty = capacity.nodes, capacity.rings, capacity.nodes - 1
     node, ring = xp.arange(nodes, dtype=np.int32), grown.ring_first >= 0
     absent = xp.asarray(empty - 1, np.int32)
@@ -99,18 +102,19 @@ def _joints(grown: Grown, capacity: Capacity, xp: Any) -> tuple[Any, Any, Any]:
     joints = xp.concatenate([xp.stack(pair, 1) for pair in pairs])
     last = xp.where(ring, grown.ring_last, empty)
     driver = xp.concatenate([node[2:], last, xp.where(ring, grown.ring_first, empty)])
-    there = xp.concatenate([grown.present[2:], ring, ring])
-    return joints.astype(np.int32), there, driver.astype(np.int32)
+    exists = xp.concatenate([grown.present[2:], ring, ring])
+    return joints.astype(np.int32), exists, driver.astype(np.int32)
 
 
 def ancestors(before: Any, xp: Any, loop: Callable | None) -> Any:
-    """Return which nodes (node, other) lie on the way from each to the first, itself too."""
+    """Return the mask (node, other) of nodes on the path from each to the first, with both."""
     nodes = len(before)
     own = xp.eye(nodes, dtype=bool)
 
-    def step(row, found):
-        line = found[before[row]] | own[row]
-        return xp.where(xp.arange(nodes)[:, None] == row, line[None], found)
+    # Nodes grow after the node before them, so that one pass in their order is enough.
+    def step(row, known):
+        line = known[before[row]] | own[row]
+        return xp.where(xp.arange(nodes)[:, None] == row, line[None], known)
 
     if loop is not None:
         return loop(nodes, step, own)
@@ -119,9 +123,9 @@ def ancestors(before: Any, xp: Any, loop: Callable | None) -> Any:
     return own
 
 
-def _placed(grown: Grown, there: Any, xp: Any, loop: Callable | None) -> Any:
+def _placed(grown: Grown, edge_present: Any, xp: Any, loop: Callable | None) -> Any:
     """Return the factors by which edges move nodes."""
-    way = ancestors(grown.before, xp, loop)[:, 1:] & there[None, : len(grown.before) - 1]
+    way = ancestors(grown.before, xp, loop)[:, 1:] & edge_present[None, : len(grown.before) - 1]
     rings = len(grown.ring_first)
     way = xp.concatenate([way, xp.zeros((len(way), rings), bool)], 1)
     number = xp.arange(way.shape[1], dtype=np.int32)
@@ -133,7 +137,7 @@ def _placed(grown: Grown, there: Any, xp: Any, loop: Callable | None) -> Any:
     return _least_squares(way & grown.present[:, None], member, grown.present, xp)
 
 
-def _turned(grown: Grown, there: Any, bends: Any, xp: Any, loop: Any) -> Any:
+def _turned(grown: Grown, edge_present: Any, bends: Any, xp: Any, loop: Any) -> Any:
     """Return the factors by which joints turn edges."""
     nodes, rings = len(grown.before), len(grown.ring_first)
     # Edges of the root hang on its first, as the tree of joints has it.
@@ -151,10 +155,10 @@ def _turned(grown: Grown, there: Any, bends: Any, xp: Any, loop: Any) -> Any:
     )
     at = xp.arange(rings)[:, None] + nodes - 2
     member = member | (number[None] == at) | (number[None] == at + rings)
-    return _least_squares(way & there[:, None], member & ring[:, None], there, xp)
+    return _least_squares(way & edge_present[:, None], member & ring[:, None], edge_present, xp)
 
 
-def _least_squares(way: Any, member: Any, there: Any, xp: Any) -> Any:
+def _least_squares(way: Any, member: Any, present: Any, xp: Any) -> Any:
     """Return the pseudoinverse of the differences of a tree and rings that share no edge.
 
     `way` (item, pair): the pairs on the way to each item; `member` (ring, pair). Each ring
@@ -162,18 +166,49 @@ def _least_squares(way: Any, member: Any, there: Any, xp: Any) -> Any:
     """
     reals = np.float32
     way, member = way.astype(reals), member.astype(reals)
-    count = xp.maximum(xp.sum(there), 1).astype(reals)
+    count = xp.maximum(xp.sum(present), 1).astype(reals)
     centred = way - (xp.sum(way, 0) * (1 / count))[None]
     size = 1 / xp.maximum(xp.sum(member, 1), 1)
     # Whole numbers first: the mean around a ring, then less its mean over the items.
     around = xp.sum(way[:, None] * member[None], 2)
     around = around - (xp.sum(around, 0) * (1 / count))[None]
     mean = around * size[None]
-    found = centred - xp.sum(mean[:, :, None] * member[None], 1)
-    return xp.where(there[:, None], found, 0).astype(reals)
+    factors = centred - xp.sum(mean[:, :, None] * member[None], 1)
+    return xp.where(present[:, None], factors, 0).astype(reals)
 
 
 def _wrapped(angle: Any, xp: Any) -> Any:
     """Return the same angle within ±π."""
     turn = xp.asarray(2 * np.pi, angle.dtype)
     return angle - turn * xp.round(angle * (1 / turn))
+
+
+def grown_length(plan: Plan, capacity: Capacity) -> float:
+    """Return the longest path along edges of the body that grows from a plan, in cells."""
+    grown = grow(plan, capacity)
+    apart = grown.distance[grown.present][:, grown.present]
+    return capacity.spacing * float(apart.max())
+
+
+def grown_body(plan: Plan, capacity: Capacity, softest: float = 1.0) -> Body:
+    """Return the body that grows from a plan of NumPy arrays, in cells about its first node.
+
+    `softest` is the stiffness of a joint whose gene is 0.
+    """
+    grown = grow(plan, capacity)
+    bones = skeleton(grown, capacity)
+    node, edge = np.cumsum(grown.present) - 1, np.cumsum(bones.edge_present) - 1
+    away = np.where(grown.present, grown.distance[0], 0)
+    ones = np.ones(int(bones.edge_present.sum()))
+    stiff = bones.stiffness[bones.bends].astype(float)
+    return Body(
+        positions=grown.positions[grown.present].astype(float),
+        edges=node[bones.edges[bones.edge_present]],
+        joints=edge[bones.joints[bones.bends]],
+        rest_length=capacity.spacing * ones,
+        rest_angle=bones.rest_angle[bones.bends].astype(float),
+        stretch=ones,
+        shear=ones,
+        bend=softest ** (1 - stiff),
+        arc=(away / max(away.max(), 1))[grown.present].astype(float),
+    )

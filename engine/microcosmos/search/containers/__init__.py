@@ -13,11 +13,9 @@ from jaxtyping import Float
 from ...genomes import Genotype
 from ..cells import Axis, Cells, Grid, Voronoi
 from ..insertion import Elites, Inserted, insert_into_cells
-from .fronts import Fronts, crowding_distance, front
+from .fronts import FrontFigures, Fronts, crowding_distance, front, front_figures, hypervolume
 from .learned import LearnedAxes, learned_axes
-from .novelty import DominatedNovelty, dominated_novelty
-from .quality import FrontFigures, front_figures, hypervolume
-from .survival import Survival, insert_survivors
+from .survival import DominatedNovelty, Survival, dominated_novelty, insert_survivors
 
 Container = Cells | Survival
 
@@ -53,6 +51,8 @@ def insert_program(
         whole = eqx.tree_at(of, archive, genotypes, is_leaf=lambda x: x is None)
         return insert(whole, candidates, container)
 
+    # Genotypes are an argument of their own, since donation is by argument. Of 1,024 vectors of
+    # 1,000 genes into 16,384 cells a donated insertion takes 1.1 ms (docs/evolution.md).
     program = jax.jit(
         inserted,
         donate_argnums=(0,) if donate else (),
@@ -80,6 +80,12 @@ def measured_axes(container: Container) -> tuple[Axis, ...]:
     return container.axes
 
 
+def needed_columns(container: Container) -> tuple[int, ...]:
+    """Return the columns of all measures that a container reads."""
+    learned = container.columns if isinstance(container, LearnedAxes) else ()
+    return *(axis.measure for axis in measured_axes(container)), *learned
+
+
 def best_of_cells(elites: Elites, container: Container) -> Float[np.ndarray, "cell"]:
     """Return the best fitness in each cell in double precision, NaN in empty ones."""
     occupied, fitness = np.asarray(elites.occupied), np.asarray(elites.fitness, np.float64)
@@ -99,7 +105,7 @@ def with_cells(container: Container, cells: Cells) -> Container:
 def refreshed(
     container: Container, archive: Elites, candidates: Elites, generation: int
 ) -> Container:
-    """Return the container with which a generation, counted from 1, is inserted."""
+    """Return the container for the insertion of a generation, counted from 1."""
     if isinstance(container, Survival):
         return container.refreshed(archive, candidates, generation)
     return container

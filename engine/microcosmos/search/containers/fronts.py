@@ -1,17 +1,23 @@
-"""Pareto fronts in cells: MOME (Pierrot et al., GECCO 2022, arXiv:2202.03057).
+"""Pareto fronts in cells, and their figures: MOME (Pierrot et al., GECCO 2022).
 
-Of a front that is too long the least crowded remain, as in MOME-PGX (Janmohamed, Pierrot and
-Cully, GECCO 2023, arXiv:2302.12668); crowding distance: Deb et al., IEEE Trans. Evol. Comput.
-6, 182 (2002).
+MOQD score and global hypervolume are from there (arXiv:2202.03057). Of a front that is too long
+the least crowded remain, as in MOME-PGX (Janmohamed, Pierrot and Cully, GECCO 2023,
+arXiv:2302.12668), which also has the largest sum of objectives; crowding distance: Deb et al.,
+IEEE Trans. Evol. Comput. 6, 182 (2002).
 """
 
 from functools import partial
+from math import fsum
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
+from ... import exact
+from ...bounds import refuse_uncountable
 from ..cells import Axis, Cells
 from ..insertion import Elites, height
 from .survival import Survival
@@ -20,7 +26,7 @@ Rows = Int[Array, "row"]
 
 
 class Fronts(Survival):
-    """In each cell the elites that no other equals or exceeds in both of two objectives."""
+    """Elites of each cell that no other of the cell equals or exceeds in both objectives."""
 
     cells: Cells
     second: Axis
@@ -31,15 +37,17 @@ class Fronts(Survival):
     """True if the least of the second objective is best."""
 
     def __check_init__(self) -> None:
-        if self.size < 2:
-            raise ValueError(f"`size` must be at least 2, the ends of a front, got {self.size}")
+        refuse_uncountable(2, size=self.size)  # The two ends of a front.
 
     @property
     def count(self) -> int:
         return self.cells.count * self.size
 
     def survivors(self, pool: Elites, position: Rows) -> Bool[Array, "row"]:
-        """Return the rows of fronts, of long ones the ends and the least crowded."""
+        """Return the rows on fronts.
+
+        A front that is too long keeps its ends and its least crowded rows.
+        """
         value = pool.measures[:, self.second.measure]
         able = pool.occupied & jnp.isfinite(value)
         cell = jnp.where(able, self.cells.of(pool.measures), self.cells.count)
@@ -72,7 +80,8 @@ def front(
 ) -> Bool[Array, "row"]:
     """Return the rows that no other of their cell equals or exceeds in both objectives.
 
-    Of rows equal in both, that with the smallest position is on the front. Numbers are finite.
+    Among rows equal in both, the one with the smallest position is on the front. Numbers are
+    finite.
     """
     first, second = height(first), height(second)
     order = jnp.lexsort((position, -second, -first, cell))
@@ -122,3 +131,64 @@ def _ends(cell: Rows) -> tuple[Rows, Rows]:
     start = jnp.searchsorted(cell, cell, side="left")
     stop = jnp.searchsorted(cell, cell, side="right") - 1
     return start.astype(jnp.int32), stop.astype(jnp.int32)
+
+
+Values = np.ndarray | jax.Array
+Objective = Float[np.ndarray, "row"]
+
+
+class FrontFigures(NamedTuple):
+    """Figures of all fronts, in double precision; sums do not depend on the order of rows.
+
+    The reference point is fitness 0 and the worst end of the second objective, which counts
+    from 0 to 1 on its own scale.
+    """
+
+    moqd_score: float
+    """Sum over cells of the hypervolume of a cell's front."""
+    hypervolume: float
+    """Hypervolume of the front of all elites."""
+    largest_sum: float
+    """Largest sum of fitness and second objective of an elite; 0 without elites."""
+    mean_length: float
+    """Elites for each cell that has one."""
+
+
+def front_figures(fitness: Values, measures: Values, fronts: Fronts) -> FrontFigures:
+    """Return the figures of elites, given as fitness (row) and measures (row, measure)."""
+    if not len(fitness):
+        return FrontFigures(0.0, 0.0, 0.0, 0.0)
+    cell = np.asarray(fronts.cells.of(jnp.asarray(measures)))
+    first, measures = np.asarray(fitness, np.float64), np.asarray(measures)
+    second = scaled(fronts.second, measures[:, fronts.second.measure], least=fronts.least)
+    return FrontFigures(
+        moqd_score=hypervolume(cell, first, second),
+        hypervolume=hypervolume(np.zeros_like(cell), first, second),
+        largest_sum=float(np.max(first + second)),
+        mean_length=len(cell) / len(np.unique(cell)),
+    )
+
+
+def hypervolume(cell: Int[np.ndarray, "row"], first: Objective, second: Objective) -> float:
+    """Return the sum over cells of the area between their rows and the point (0, 0)."""
+    order = np.lexsort((-second, -first, cell))
+    cell, first, second = cell[order], np.maximum(first[order], 0.0), second[order]
+    leads = np.append(True, cell[1:] != cell[:-1])
+    row, start = np.cumsum(leads) - 1, np.flatnonzero(leads)
+    column = np.arange(len(cell)) - start[row]
+    widths = np.zeros((len(start), column.max() + 2))
+    widths[row, column + 1] = np.maximum(second, 0.0)
+    steps = np.diff(np.maximum.accumulate(widths, axis=1))[row, column]
+    # An exact sum: the order of cells and rows, which containers may change, makes no
+    # difference.
+    return fsum((first * steps).tolist())
+
+
+def scaled(axis: Axis, values: Float[np.ndarray, "row"], *, least: bool) -> Objective:
+    """Return values from 0 to 1 on an axis' own scale; 1 is its low end if least is best."""
+    low, high = axis.low, axis.high
+    values = np.clip(np.asarray(values, np.float64), low, high)
+    if axis.logarithmic:
+        low, high, values = map(exact.logarithm, (low, high, values))
+    place = (values - low) / (high - low)
+    return 1 - place if least else place

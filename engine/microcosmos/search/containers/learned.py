@@ -10,6 +10,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from ...archive import components
+from ...bounds import refuse_beyond, refuse_uncountable
+from ...invalid import InvalidField
 from ...portable import long_product
 from ..cells import Cells
 from ..insertion import MAX_INT, Elites, zeros
@@ -17,7 +19,7 @@ from .survival import Survival
 
 
 class Learned(eqx.Module):
-    """What is learned: see `archive.components.Components`."""
+    """The learned axes: see `archive.components.Components`."""
 
     mean: Float[Array, "measure"]
     scale: Float[Array, "measure"]
@@ -26,14 +28,14 @@ class Learned(eqx.Module):
     low: Float[Array, "axis"]
     high: Float[Array, "axis"]
     epoch: Int[Array, ""]
-    """How often axes have been learned."""
+    """Number of times that axes have been learned."""
 
 
 class LearnedAxes(Survival):
     """One elite in each cell along axes that are learned from the measures of elites.
 
-    A place is not a cell: an elite keeps its place when the axes are learned anew. Until then
-    the first in the total order survive.
+    A place is not a cell: an elite keeps its place when the axes are learned anew. Before the
+    axes are first learned, the first in the total order survive.
     """
 
     cells: Cells
@@ -48,13 +50,16 @@ class LearnedAxes(Survival):
     first: int = eqx.field(static=True)
     """Generation in which the axes are learned for the second time."""
 
+    def __check_init__(self) -> None:
+        refuse_uncountable(1, dimensions=self.dimensions, bins=self.bins, first=self.first)
+
     @property
     def count(self) -> int:
         return self.bins**self.dimensions
 
     @property
     def epoch(self) -> int:
-        """How often axes have been learned."""
+        """Number of times that axes have been learned."""
         return int(self.learned.epoch)
 
     def coordinates(
@@ -90,8 +95,11 @@ class LearnedAxes(Survival):
         return pool.occupied & jnp.where(self.learned.epoch > 0, best, ahead[position] <= count)
 
     def changes(self, generation: int) -> bool:
-        """Return whether axes are learned in this generation: in the first, in `first` and
-        whenever the number has doubled. Without axes, in any."""
+        """Return whether axes are learned in this generation.
+
+        They are learned in the first, in `first`, whenever the number has doubled since, and in
+        every generation as long as there are none.
+        """
         doublings, rest = divmod(generation, self.first)
         doubled = rest == 0 and doublings > 0 and doublings & (doublings - 1) == 0
         return generation == 1 or doubled or self.epoch == 0
@@ -99,23 +107,25 @@ class LearnedAxes(Survival):
     def refreshed(self, archive: Elites, candidates: Elites, generation: int) -> "LearnedAxes":
         """Return the container with axes learned from elites and candidates, if it is time.
 
-        With fewer rows than axes and two more they stay as they are.
+        With fewer rows than the number of axes plus two, the axes stay as they are.
         """
         if not self.changes(generation):
             return self
         rows = self._values(archive, candidates)
         if len(rows) < self.dimensions + 2:
             return self
-        found = vars(components.learn(rows, self.dimensions))
-        arrays = {name: np.asarray(one, np.float32) for name, one in found.items()}
+        # `components` has a decomposition of its own: the bits of a library depend on the
+        # processor.
+        learned = vars(components.learn(rows, self.dimensions))
+        arrays = {name: np.asarray(one, np.float32) for name, one in learned.items()}
         return self.with_arrays(arrays | {"epoch": np.int32(self.epoch + 1)})
 
     def arrays(self) -> Mapping[str, Any]:
         return {one.name: getattr(self.learned, one.name) for one in fields(self.learned)}
 
     def with_arrays(self, arrays: Mapping[str, Any]) -> "LearnedAxes":
-        found = {one.name: jnp.asarray(arrays[one.name]) for one in fields(self.learned)}
-        return replace(self, learned=Learned(**found))
+        learned = {one.name: jnp.asarray(arrays[one.name]) for one in fields(self.learned)}
+        return replace(self, learned=Learned(**learned))
 
     def _values(self, *parts: Elites) -> Float[np.ndarray, "row measure"]:
         """Return the measures of sound rows on their own scales, by generation and slot."""
@@ -126,6 +136,7 @@ class LearnedAxes(Survival):
         born.insert(0, np.concatenate([np.asarray(one.slot) for one in parts]))
         descriptors = measures[:, [axis.measure for axis in self.axes]]
         able = able & np.isfinite(fitness) & np.all(np.isfinite(descriptors), 1)
+        # Sums depend on the order of rows. The place of an elite has no meaning, its birth has.
         order = np.lexsort(born)
         order = order[able[order]]
         return components.scaled(measures[order][:, list(self.columns)], self.floors)
@@ -144,8 +155,12 @@ def learned_axes(
 
     `columns` are those of the measures of which axes are made, `floors` the least value of
     each that enters as a logarithm, 0 for one that does not. Raises `ValueError` for fewer
-    measures than axes.
+    measures than axes, for a measure twice, and for numbers beyond their bounds.
     """
+    refuse_uncountable(1, axes=axes)
+    refuse_uncountable(0, **{f"columns.{i}": column for i, column in enumerate(columns)})
+    if len(set(columns)) < len(columns):
+        raise InvalidField("columns", f"must be of different measures; got {columns}")
     if len(columns) < axes:
         raise ValueError(
             f"`columns` must be at least as many as `axes` ({axes}), got {columns}"
@@ -153,6 +168,8 @@ def learned_axes(
     floors = floors or (0.0,) * len(columns)
     if len(floors) != len(columns):
         raise ValueError(f"`floors` must be as many as `columns`, got {floors} for {columns}")
+    least: dict[str, Any] = {f"floors.{i}": floor for i, floor in enumerate(floors)}
+    refuse_beyond(0, **least)
     size = len(columns)
     none = Learned(
         mean=zeros(np.float32, size),

@@ -1,25 +1,36 @@
 """Emitters: sources of children."""
 
-from .bandit import Bandit
-from .cma_mae import CmaMae
-from .cma_mega import CmaMega
-from .elites import Random, newcomers
+from ...operators import OPERATORS
 from .emitter import (
     NO_PARENT,
-    OPERATORS,
     Children,
     Emitter,
+    Keys,
     Learner,
     Outcome,
+    Problem,
+    Stateless,
     begin,
+    children,
     emit,
     emit_chosen,
+    newcomers,
+    or_newcomers,
     outcome,
+    parentless,
     tell,
     with_slots,
 )
-from .lamarckian import Lamarckian
-from .neat import Neat
-from .population import PopulationNeat
-from .selection import credit
-from .vectors import IsoLine
+from .population import Population, PopulationNeat, build_population
+from .selection import credit, draw
+from .strategies import CmaMae, CmaMega, build_cma_mae, build_cma_mega
+from .variation import (
+    IsoLine,
+    Neat,
+    Random,
+    Selecting,
+    build_gaussian,
+    build_line,
+    build_neat,
+    build_random,
+)

@@ -1,7 +1,8 @@
 """Emitters: sources of children, which learn the outcome of their evaluation."""
 
-from dataclasses import replace
-from typing import Any, Protocol, runtime_checkable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import equinox as eqx
 import jax
@@ -10,25 +11,11 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Key, PRNGKeyArray, PyTree
 
 from ...genomes import Genotype, Graph
-from ...neat import Counters, Novelty, no_novelty, number
+from ...neat import Counters, Novelty, Rates, no_novelty, number
+from ...operators import OPERATORS
+from ..cells import Cells
 from ..gradients import Slopes
 from ..insertion import Elites, Inserted
-
-OPERATORS = (
-    "random",
-    "neat",
-    "crossover",
-    "copy",
-    "iso+line",
-    "gaussian",
-    "cma-me",
-    "cma-mae",
-    "tensorneat",
-    "lamarckian",
-    "cma-mega",
-    "fork",
-)
-"""Names of the operators that make children, by operator code."""
 
 NO_PARENT = -1
 
@@ -40,12 +27,17 @@ Keys = Key[Array, "slot"]
 State = PyTree[Array | np.ndarray]
 """The state of an emitter."""
 
+Newcomer = Callable[..., Any]
+"""`newcomer(key=...)` makes a random genotype."""
+
+T = TypeVar("T")
+
 
 class Children(eqx.Module):
     """Genotypes to be evaluated.
 
     A parent is a cell of the archive, or a slot of the generation before plus the number of
-    cells, or −1.
+    cells, or −1. Parts number others behind those.
     """
 
     genotypes: Genotype
@@ -76,6 +68,27 @@ def outcome(candidates: Elites, inserted: Inserted) -> Outcome:
         feasible=candidates.occupied,
         **vars(inserted),
     )
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The facts about a search from which its emitters are built."""
+
+    slots: int
+    """Children a generation."""
+    operator: int
+    """Number of the operator that makes the children."""
+    newcomer: Newcomer
+    cells: Cells
+    """Cells of the descriptors."""
+    seed: int
+    rates: Rates
+    """Rates of NEAT's mutations."""
+    inputs: int
+    """Inputs of networks; 0 for genomes of numbers."""
+    outputs: int
+    room: tuple[int, int] | None
+    """Most nodes and connections of networks; None for genomes of numbers."""
 
 
 @runtime_checkable
@@ -136,6 +149,7 @@ class Learner(Emitter, Protocol):
 def begin(emitters: tuple[Emitter, ...], *, key: PRNGKeyArray) -> tuple[State, ...]:
     """Return the emitters' states before the first generation."""
     count = len(emitters)
+    # One program: outside of one, each operation on keys compiles its own.
     split = jax.jit(lambda key: tuple(jax.random.split(jax.random.fold_in(key, BEFORE), count)))
     pairs = zip(emitters, split(key), strict=True)
     return tuple(emitter.init(key=own) for emitter, own in pairs)
@@ -156,17 +170,19 @@ def emit(
     mutations get equal numbers, also in children of different emitters.
     """
     keys = _keys(key, generation, sum(emitter.slots for emitter in emitters))
-    found, kept, genes, first = [], [], [], 0
+    children_of, kept, genes, first = [], [], [], 0
     for emitter, state in zip(emitters, states, strict=True):
         chosen = keys[first : first + emitter.slots]
         offspring, state, novelty = emitter.emit(state, archive, keys=chosen)
-        found.append(offspring)
+        children_of.append(offspring)
         kept.append(state)
         genes.append(novelty)
         first += emitter.slots
-    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
+    children = jax.tree.map(lambda *parts: jnp.concatenate(parts), *children_of)
     parts = _filled(genes, [emitter.slots for emitter in emitters])
     novelty = jax.tree.map(lambda *rows: jnp.concatenate(rows), *parts)
+    # All at once: the same mutation has one number whichever emitter made it
+    # (tests/engine/search/test_numbering.py).
     children, counters = _numbered(children, novelty, counters)
     return children, tuple(kept), counters
 
@@ -187,13 +203,13 @@ def emit_chosen(
     """
     slots = chosen.shape[0]
     keys = _keys(key, generation, slots)
-    found = [with_slots(one, slots).emit(None, archive, keys=keys) for one in emitters]
+    emitted = [with_slots(one, slots).emit(None, archive, keys=keys) for one in emitters]
 
     def of_chosen(*rows):
         return jnp.stack(rows)[chosen, jnp.arange(slots)]
 
-    children = jax.tree.map(of_chosen, *(offspring for offspring, _, _ in found))
-    parts = _filled([novelty for _, _, novelty in found], [slots] * len(found))
+    children = jax.tree.map(of_chosen, *(offspring for offspring, _, _ in emitted))
+    parts = _filled([novelty for _, _, novelty in emitted], [slots] * len(emitted))
     return _numbered(children, jax.tree.map(of_chosen, *parts), counters)
 
 
@@ -209,7 +225,7 @@ def _keys(key: PRNGKeyArray, generation: Int[Array, ""], slots: int) -> Keys:
 
 
 def _filled(parts: list[Novelty | None], slots: list[int]) -> list[Novelty] | list[None]:
-    """Return the new genes of every emitter's children, or None of each if none makes any."""
+    """Return the new genes of every emitter's children; None for all if there are none."""
     like = next((part for part in parts if part is not None), None)
     if like is None:
         return [None] * len(parts)
@@ -237,3 +253,35 @@ def tell(
         after.append(emitter.tell(state, jax.tree.map(lambda x, rows=rows: x[rows], outcome)))
         first += emitter.slots
     return tuple(after)
+
+
+def newcomers(newcomer: Newcomer, keys: Keys) -> Children:
+    """Draw random genotypes, one for each key."""
+    genotypes = jax.vmap(lambda key: newcomer(key=key))(keys)
+    return parentless(genotypes, keys.shape[0], "random")
+
+
+def parentless(genotypes: Genotype, slots: int, operator: str | int) -> Children:
+    """Return children of an operator, given by name or number, without known parents."""
+    parents = jnp.full((slots, 2), NO_PARENT, jnp.int32)
+    return Children(genotypes, parents, jnp.full(slots, _number_of(operator), jnp.int32))
+
+
+def children(
+    genotypes: Genotype, parents: Sequence[Int[Array, "slot"]], operator: str | int
+) -> Children:
+    """Return children of an operator, given by name or number, and one or two parents, given
+    as cells."""
+    first, second = (*parents, jnp.full_like(parents[0], NO_PARENT))[:2]
+    pairs = jnp.stack([first, second], 1).astype(jnp.int32)
+    return Children(genotypes, pairs, jnp.full(len(first), _number_of(operator), jnp.int32))
+
+
+def _number_of(operator: str | int) -> int:
+    return OPERATORS.index(operator) if isinstance(operator, str) else operator
+
+
+def or_newcomers(archive: Elites, varied: T, fresh: T) -> T:
+    """Return the varied children, or the fresh ones if the archive is empty."""
+    any_elite = jnp.any(archive.occupied)
+    return jax.tree.map(lambda one, other: jnp.where(any_elite, one, other), varied, fresh)

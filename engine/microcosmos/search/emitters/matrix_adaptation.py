@@ -49,6 +49,7 @@ class Strategy:
 def strategy(genes: int, children: int) -> Strategy:
     """Return the weights and rates of Hansen, table 1."""
     half = max(1, children // 2)
+    # By `exact`: a logarithm of the C library may differ in the last bit between machines.
     raw = logarithm((children + 1) / 2) - logarithm(np.arange(1, half + 1))
     raw = np.maximum(raw, 0.0)
     weights = raw / raw.sum() if raw.sum() > 0 else np.ones(1)
@@ -110,6 +111,8 @@ def update(
     length = jnp.sqrt(jnp.sum(s * s)) / strategy.expected_length
     return Distribution(
         mean=distribution.mean + distribution.sigma * jnp.sum(w[:, None] * d, 0),
+        # By the length of the path (Hansen 2016). pyribs takes its square, and its steps are
+        # longer (docs/evolution.md, "Benchmark functions").
         sigma=distribution.sigma * jnp.exp(c_s / strategy.d_s * (length - 1)),
         m=m,
         s=s,

@@ -1,6 +1,7 @@
 """NEAT with its own population: parents are its networks; the archive only records."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -9,10 +10,11 @@ import numpy as np
 from jaxtyping import Array, Float, Int, PRNGKeyArray
 
 from ... import neat
+from ...bounds import refuse_uncountable
 from ...genomes import Graph
+from ...operators import OPERATORS
 from ..insertion import Elites
-from .elites import Newcomer, parentless
-from .emitter import NO_PARENT, OPERATORS, Children, Keys, Outcome
+from .emitter import NO_PARENT, Children, Keys, Newcomer, Outcome, Problem, parentless
 
 CODES = np.array(
     [OPERATORS.index(name) for name in ("copy", "neat", "crossover", "crossover")], np.int32
@@ -48,6 +50,9 @@ class PopulationNeat:
     settings: neat.Settings
     inputs: int
     outputs: int
+
+    def __post_init__(self) -> None:
+        refuse_uncountable(1, slots=self.slots, inputs=self.inputs, outputs=self.outputs)
 
     def init(self, *, key: PRNGKeyArray) -> Population:
         keys = jax.random.split(key, self.slots)
@@ -92,3 +97,15 @@ class PopulationNeat:
         species = neat.divide(networks, state.species, self.settings, state.age - 1)
         fitness = jnp.where(outcome.feasible, outcome.fitness, -jnp.inf)
         return replace(state, networks=networks, fitness=fitness, species=species)
+
+
+def build_population(settings: Any, problem: Problem) -> PopulationNeat:
+    whole, rates = neat.PRESETS[settings.preset], problem.rates
+    if settings.preset != "paper":  # TensorNEAT's rates, over all activations.
+        rates = replace(whole.rates, palette=rates.palette, recurrent=rates.recurrent)
+    names = ("threshold", "stagnation", "survival", "crossover")
+    given = {name: getattr(settings, name) for name in names}
+    given = {name: value for name, value in given.items() if value is not None}
+    chosen = replace(whole, rates=rates, population=problem.slots, **given)
+    of_networks = problem.newcomer, chosen, problem.inputs, problem.outputs
+    return PopulationNeat(problem.slots, *of_networks)

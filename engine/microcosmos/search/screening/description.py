@@ -10,14 +10,12 @@ from jaxtyping import Array, Float
 
 from ... import exact
 from ...genomes import Drive, Genotype
-from ...naming import FORMS
-from ...portable import arctangent, cosine, long_product, root, sine
-from ...world import edges_there, grown_nodes, joints_there
-from ..kinematics import along, axis
-from ..measures import curvature, symmetry
+from ...measures import FORMS
+from ...portable import arctangent, cosine, long_product, sine
+from ...world import grown_nodes, present_edges, present_joints
+from ..measures import along, along_joints, axis, curvature, symmetry
 from ..task import Task
-from .resistive import Swim, swim
-from .stroke import PHASES, Stroke, Strokes
+from .stroke import PHASES, Stroke, Strokes, Swim, swim
 
 HARMONICS, WAVES = 4, 3
 """Harmonics in time, from 0, and waves along the body of the modes of bending."""
@@ -27,7 +25,7 @@ Spectrum = Float[Array, "harmonic joint"]
 
 
 class Described(eqx.Module):
-    """What is known of a creature before it is simulated."""
+    """The description of a creature before it is simulated."""
 
     inputs: Float[Array, "*block input"]
     known: Float[Array, "*block axis"]
@@ -48,7 +46,7 @@ def _known(task: Task, driven: Drive, genotype: Genotype) -> dict[str, Array]:
     hidden, connections = task.encoding.size(genotype)
     form: Mapping[str, Any] = dict(zip(FORMS, task.form, strict=True))
     form = form if driven.form is None else driven.form
-    nodes = jnp.sum(grown_nodes(driven.world))
+    nodes = task.copies * jnp.sum(grown_nodes(driven.world))  # `driven` is one copy alone.
     return {"hidden_nodes": hidden, "connections": connections, "nodes": nodes, **form}
 
 
@@ -56,8 +54,8 @@ def inputs_of(strokes: Strokes, driven: Drive, stroke: Stroke) -> Inputs:
     """Return numbers about a creature: its speed by resistive force theory, its shapes, its
     form, and the modes of its bending."""
     world = driven.world
-    there = edges_there(world)
-    edges = jnp.ones(len(world.rods.edges)) if there is None else there.astype(jnp.float32)
+    grown = present_edges(world)
+    edges = jnp.ones(len(world.rods.edges)) if grown is None else grown.astype(jnp.float32)
     moved = swim(stroke, world.rods.edges, edges)
     real, imaginary = _spectrum(driven, stroke)
     length = strokes.task.length if driven.length is None else driven.length
@@ -67,9 +65,10 @@ def inputs_of(strokes: Strokes, driven: Drive, stroke: Stroke) -> Inputs:
         *_waves(driven, real, imaginary),
         *(() if driven.form is None else [driven.form[name] for name in FORMS]),
     ]
-    found = jnp.stack([jnp.asarray(one, jnp.float32) for one in numbers])
-    found = jnp.concatenate([found, *_modes(driven, real, imaginary)])
-    return jnp.clip(jnp.nan_to_num(found, nan=0.0), -1e4, 1e4)
+    columns = jnp.stack([jnp.asarray(one, jnp.float32) for one in numbers])
+    columns = jnp.concatenate([columns, *_modes(driven, real, imaginary)])
+    # Quotients of a body that does not move may be 0 by 0.
+    return jnp.clip(jnp.nan_to_num(columns, nan=0.0), -1e4, 1e4)
 
 
 def _swimming(
@@ -108,13 +107,13 @@ def _swimming(
 
 
 def _shape(
-    driven: Drive, stroke: Stroke, moved: Swim, there: Float[Array, "edge"]
+    driven: Drive, stroke: Stroke, moved: Swim, grown: Float[Array, "edge"]
 ) -> list[Array]:
-    """Return the measures of what people see, and sizes of what actuators do."""
+    """Return measures of the visible motion, and sizes of the actuators' movements."""
     world, rest = driven.world, stroke.rest
-    nodes, joints = grown_nodes(world), joints_there(world)
-    count = jnp.sum(there)
-    lengths = jnp.sum(rest.length * there[None], 1) / count
+    nodes, joints = grown_nodes(world), present_joints(world)
+    count = jnp.sum(grown)
+    lengths = jnp.sum(rest.length * grown[None], 1) / count
     bends = rest.angle / jnp.mean(lengths)
     c, s = cosine(moved.heading)[:, None], sine(moved.heading)[:, None]
     x, y = stroke.shapes[..., 0], stroke.shapes[..., 1]
@@ -135,22 +134,17 @@ def _shape(
 
 def _waves(driven: Drive, real: Spectrum, imaginary: Spectrum) -> list[Array]:
     """Return beats a stroke, waves from one joint to the next and their direction, as
-    `kinematics.waves` does, here of the first harmonic."""
-    beside = along(driven.world)
+    `measures.waves` does, here of the first harmonic."""
     power = jnp.sum(real * real + imaginary * imaginary, 1)[1:]
     rates = jnp.arange(1.0, HARMONICS, dtype=power.dtype)
     beats = jnp.sum(rates * power) / jnp.maximum(jnp.sum(power), 1e-20)
-    a, b = real[1], imaginary[1]
-    middle = [jnp.where(beside, (x[:-1] + x[1:]) / 2, 0.0) for x in (a, b)]
-    change = [jnp.where(beside, x[1:] - x[:-1], 0.0) for x in (a, b)]
-    size, step = (root(jnp.sum(x * x + y * y) + 1e-20) for x, y in (middle, change))
-    turned = jnp.sum(middle[0] * change[1] - middle[1] * change[0])
+    size, step, turned = along_joints(real[1], imaginary[1], along(driven.world))
     return [beats, arctangent(step, 2 * size), -turned / (size * step)]
 
 
 def _spectrum(driven: Drive, stroke: Stroke) -> tuple[Spectrum, Spectrum]:
     """Return real and imaginary parts of the harmonics of every joint's angle, 0 if absent."""
-    angle, joints = stroke.rest.angle, joints_there(driven.world)
+    angle, joints = stroke.rest.angle, present_joints(driven.world)
     if joints is not None:
         angle = jnp.where(joints[None], angle, 0.0)
     phase = 2 * np.pi * np.arange(PHASES) / PHASES
@@ -167,13 +161,13 @@ def _spectrum(driven: Drive, stroke: Stroke) -> tuple[Spectrum, Spectrum]:
 def _modes(driven: Drive, real: Spectrum, imaginary: Spectrum) -> list[Float[Array, "number"]]:
     """Return amplitudes of bending in modes of space and time, and how the modes of the first
     harmonic lead one another."""
-    joints, count = joints_there(driven.world), real.shape[1]
-    there = jnp.ones(count) if joints is None else joints.astype(real.dtype)
-    count = jnp.maximum(jnp.sum(there), 1.0)
-    place = np.pi * (jnp.cumsum(there) - 0.5) / count
+    joints, count = present_joints(driven.world), real.shape[1]
+    grown = jnp.ones(count) if joints is None else joints.astype(real.dtype)
+    count = jnp.maximum(jnp.sum(grown), 1.0)
+    place = np.pi * (jnp.cumsum(grown) - 0.5) / count
     basis = [jnp.ones_like(place)]
     basis += [f(k * place) for k in range(1, WAVES + 1) for f in (cosine, sine)]
-    basis = jnp.stack(basis, 1) * (there / count)[:, None]
+    basis = jnp.stack(basis, 1) * (grown / count)[:, None]
     real, imaginary = long_product(real, basis), long_product(imaginary, basis)
     ahead = real[1, 1:] * imaginary[1, :-1] - imaginary[1, 1:] * real[1, :-1]
     alike = real[1, 1:] * real[1, :-1] + imaginary[1, 1:] * imaginary[1, :-1]

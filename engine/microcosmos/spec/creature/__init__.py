@@ -1,5 +1,13 @@
 """The creature file: identity, genome, measured numbers and provenance."""
 
-from .file import CreatureError, CreatureFile, check, fitness_of, room, scene_of
-from .identity import Identity
+from .file import (
+    CreatureError,
+    CreatureFile,
+    Identity,
+    alone,
+    check,
+    fitness_of,
+    room,
+    scene_of,
+)
 from .plan import PlanDrawing, plan_drawing

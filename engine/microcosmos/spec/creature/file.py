@@ -1,34 +1,103 @@
-"""The creature file: its model, and checks of its contents."""
+"""The creature file: its identity, whose SHA-256 is the creature's name, and its checks."""
 
-import re
 from collections.abc import Mapping
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, StringConstraints, ValidationError, model_validator
+from pydantic import Field, StringConstraints, Tag, ValidationError, model_validator
 
+from ... import bodies
+from ...invalid import InvalidField
+from ...measures import NAMED
 from ...naming import LICENCE, name
-from ..base import Digest, Part, field_path
+from ..base import ENCODINGS, Digest, Numeric, Part, invalid_fields, name_in, one_of, refuse
+from ..body import Body, GrownBody, PluginBody, shape
+from ..coupling import Coupling
 from ..plugins import PluginVersions
-from ..scene import Scene
+from ..scene import Gait, Scene
 from ..search import MEASURED, Task
-from .genomes import Network
-from .identity import Identity
+from ..world import World
+from .genomes import CPPN, BodyGraph, Direct, Fold, GaitGenome, Network, PluginGenome
 
-Room = Annotated[int, Field(ge=8, le=8192)]
-Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Genome = Annotated[
+    Annotated[CPPN, Tag("cppn")]
+    | Annotated[Direct, Tag("direct")]
+    | Annotated[BodyGraph, Tag("body-graph")]
+    | Annotated[GaitGenome, Tag("gait")]
+    | Annotated[Fold, Tag("fold")]
+    | Annotated[PluginGenome, Tag("plugin")],
+    *one_of("encoding", ENCODINGS[:-1], name_in("encoding")),
+]
+
+
+class CoupledWorld(World):
+    """The world and the coupling, on both of which a creature's measures depend."""
+
+    coupling: Coupling
+
+
+class Identity(Part):
+    """Genome, world, body and task of a creature."""
+
+    format: Literal["microcosmos-creature/1"]
+    genome: Genome
+    world: CoupledWorld
+    body: Body
+    task: Task
+
+    @model_validator(mode="after")
+    def check_fit(self) -> Self:
+        scene = self.scene
+        if isinstance(self.body, PluginBody):
+            raise InvalidField("body", f"must be a graph, got {self.body.builder!r}")
+        if isinstance(self.genome, Direct | Fold | PluginGenome):
+            self.genome.refuse_other_length(scene.body)
+        if isinstance(self.genome, BodyGraph):
+            assert isinstance(scene.body, GrownBody)  # Else the scene would not be valid.
+            self.genome.plan.refuse_unfit(scene.body)
+        return self
+
+    @property
+    def shape(self) -> bodies.Body:
+        """Return the graph of the body at rest; that of a plan as it has grown."""
+        genome, body = self.genome, self.body
+        if isinstance(genome, BodyGraph) and isinstance(body, GrownBody):
+            return genome.plan.grow(body, genome.control.softest)
+        return shape(body)
+
+    @property
+    def scene(self) -> Scene:
+        """Return the scene that is simulated."""
+        world, genome = self.world.model_dump(), self.genome
+        gait = isinstance(genome, GaitGenome)
+        control = Gait(**genome.model_dump(exclude={"encoding"})) if gait else genome.control
+        return Scene(
+            coupling=world.pop("coupling"),
+            world=World(**world),
+            body=self.body,
+            control=control,
+            task=self.task,
+        )
+
+
+Room = Annotated[int, Field(ge=8, le=8192), Numeric]
+Line = StringConstraints(strip_whitespace=True, min_length=1)
+Name = Annotated[str, Line, StringConstraints(max_length=200)]
+# Terms of descendants join those of all creatures that a run began from: no limit fits.
+Licence = Annotated[str, Line]
 Label = Annotated[str, StringConstraints(max_length=200)]
-Figures = Annotated[dict[Label, float], Field(max_length=1000)]
-Credit = Annotated[tuple[Name, ...], Field(max_length=50)]
+Figures = Annotated[dict[Label, Annotated[float, Numeric]], Field(max_length=1000)]
+Credit = tuple[Name, ...]
 Parents = Annotated[tuple[Digest, ...], Field(max_length=256)]
 
 
-class CreatureError(ValueError):
+class CreatureError(InvalidField):
     """A creature file that cannot be accepted: `field`, what it `needed` and what it `got`."""
 
-    def __init__(self, field: str, needed: str, got: object):
-        super().__init__(f"`{field}` needs {needed}; got {got!r:.120}")
-        self.field, self.needed, self.got = field, needed, got
+    def __init__(self, field: str, needed: str, got: object, reason: str = ""):
+        reason = reason or f"needs {needed}; got {got!r:.120}"
+        super().__init__(field, reason, needed=needed, got=got)
+        self.args = field, needed, got, reason
 
 
 class Measured(Part):
@@ -48,7 +117,9 @@ class Measured(Part):
     def refuse_disagreement(self) -> Self:
         pairs = self.descriptors.items()
         if wrong := [name for name, value in pairs if value != self.measures.get(name)]:
-            raise ValueError(f"`measures` must hold descriptors; got other values of {wrong}")
+            raise InvalidField(
+                "measures", f"must hold descriptors; got other values of {wrong}"
+            )
         return self
 
 
@@ -69,30 +140,28 @@ class CreatureFile(Part):
     sha256: Digest
     measured: Measured | None = None
     provenance: Provenance | None = None
-    licence: Name = LICENCE
+    licence: Licence = LICENCE
     credit: Credit = ()
     """Names to show with the creature."""
 
     @model_validator(mode="after")
-    def refuse_its_own_parent(self) -> Self:
-        if self.provenance and self.sha256 in self.provenance.parents:
-            raise ValueError(
-                f"`provenance.parents` must be other creatures; got its own name {self.sha256}"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def refuse_other_measures(self) -> Self:
+    def check(self) -> Self:
+        refuse(
+            self.provenance and self.sha256 in self.provenance.parents,
+            "provenance.parents",
+            f"must be other creatures; got its own name {self.sha256}",
+        )
         if self.measured is None:
             return self
         room_of(self.identity.genome, self.measured.room)
         expected = fitness_of(self.identity.task, self.measured.measures)
         # Compilers may fuse the sum, which rounds differently.
-        if not np.isclose(self.measured.fitness, expected, rtol=1e-5, atol=1e-9):
-            raise ValueError(
-                f"`measured.fitness` must be {expected!r} as `measures` have it for "
-                f"{self.identity.task.fitness}; got {self.measured.fitness!r}"
-            )
+        refuse(
+            not np.isclose(self.measured.fitness, expected, rtol=1e-5, atol=1e-9),
+            "measured.fitness",
+            f"must be {expected!r} as `measures` have it for "
+            f"{self.identity.task.fitness}; got {self.measured.fitness!r}",
+        )
         return self
 
 
@@ -109,6 +178,11 @@ def fitness_of(task: Task, measures: Mapping[str, float]) -> float:
     return float(both.get(task.fitness, displacement + energy))
 
 
+def alone(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a creature file without the files of its ancestors, with which servers send it."""
+    return {name: part for name, part in data.items() if name != "ancestors"}
+
+
 def check(data: Any) -> dict[str, Any]:
     """Return the creature file with its genes, world and hash checked.
 
@@ -117,11 +191,10 @@ def check(data: Any) -> dict[str, Any]:
     try:
         file = CreatureFile.model_validate(data)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        needed = first["msg"].removeprefix("Value error, ")
-        named = re.match(r"`([\w.]+)`", needed)
-        field = field_path(first["loc"]) or (named[1] if named else "file")
-        raise CreatureError(field, needed, first["input"]) from error
+        errors = error.errors(include_url=False)
+        first, given = invalid_fields(errors)[0], errors[0]["input"]
+        needed = first.needed or first.reason
+        raise CreatureError(first.field or "file", needed, given, first.reason) from error
     document = file.model_dump(mode="json")
     if (expected := name(document["identity"])) != file.sha256:
         raise CreatureError("sha256", f"the hash of the identity, {expected}", file.sha256)
@@ -131,8 +204,12 @@ def check(data: Any) -> dict[str, Any]:
 def scene_of(file: Mapping[str, Any]) -> Scene:
     """Return the scene in which a parsed file is evaluated or replayed."""
     scene = Identity.model_validate(file["identity"]).scene
-    plugins = (file.get("measured") or {}).get("plugins")
-    return Scene(**{**dict(scene), "plugins": plugins}) if plugins else scene
+    measured = file.get("measured") or {}
+    plugins = measured.get("plugins") or {}
+    named = tuple(name for name in NAMED if name in measured.get("measures", {}))
+    if not plugins and not named:
+        return scene
+    return Scene(**{**dict(scene), "plugins": plugins, "measures": named})
 
 
 def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] | None:
@@ -141,10 +218,11 @@ def room_of(genome: Part, recorded: tuple[int, int] | None) -> tuple[int, int] |
         return None
     least = (max(8, len(genome.nodes.id)), max(8, len(genome.connections.innovation)))
     nodes, connections = recorded or (least[0], max(least))
-    if nodes < least[0] or connections < least[1]:
-        raise ValueError(
-            f"`measured.room` must be at least {list(least)}, got {[nodes, connections]}"
-        )
+    refuse(
+        nodes < least[0] or connections < least[1],
+        "measured.room",
+        f"must be at least {list(least)}, got {[nodes, connections]}",
+    )
     return nodes, connections
 
 

@@ -1,20 +1,122 @@
-"""Genomes in creature files, by their encoding."""
+"""Genomes in creature files, by their encoding, and the validation of NEAT genes."""
 
-from typing import Literal, Self
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, field_validator, model_validator
+from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from ... import bodies
 from ...bodies import growth
+from ...invalid import InvalidField
 from ...naming import decode, decoded
 from .. import encodings, scene
-from ..base import Part
+from ..base import Numeric, Part, refuse
 from ..body import Body, GrownBody, shape
-from ..control import Control, NetworkInputs
+from ..control import Control
 from ..encodings import MAX_GENES
 from ..scene import Gait
-from .cppn_genes import Connections, Float32, Nodes, Number, check_genes
+
+Activation = Literal[
+    "identity", "sigmoid", "tanh", "relu", "sin", "cos", "gaussian", "abs", "square"
+]
+
+MAX_NODES, MAX_CONNECTIONS = 1024, 8192
+
+
+Number = Annotated[int, Field(ge=0, lt=2**31), Numeric]
+
+
+def _decodable(text: str) -> str:
+    decode(text)
+    return text
+
+
+Float32 = Annotated[str, AfterValidator(_decodable)]
+"""Base64 of float32 values."""
+
+
+class Nodes(Part):
+    """Node genes: numbers, activations and biases."""
+
+    id: tuple[Number, ...] = Field(max_length=MAX_NODES)
+    activation: tuple[Activation, ...] = Field(max_length=MAX_NODES)
+    bias: Float32 = Field(max_length=8 * MAX_NODES)
+
+
+class Connections(Part):
+    """Connection genes: innovation numbers, ends by node number, flags and weights."""
+
+    innovation: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
+    source: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
+    target: tuple[Number, ...] = Field(max_length=MAX_CONNECTIONS)
+    enabled: tuple[bool, ...] = Field(max_length=MAX_CONNECTIONS)
+    weight: Float32 = Field(max_length=8 * MAX_CONNECTIONS)
+
+
+def check_genes(
+    inputs: int, outputs: int, nodes: Nodes, connections: Connections, cycles: bool = False
+) -> None:
+    """Raise `ValueError` where genes do not make a network in canonical order.
+
+    The network must be feed-forward unless `cycles` are allowed.
+    """
+    _same_length("nodes", nodes.id, nodes.activation, decode(nodes.bias))
+    _same_length(
+        "connections",
+        connections.innovation,
+        connections.source,
+        connections.target,
+        connections.enabled,
+        decode(connections.weight),
+    )
+    _increasing("nodes.id", nodes.id)
+    _increasing("connections.innovation", connections.innovation)
+    fixed = inputs + outputs
+    refuse(
+        nodes.id[:fixed] != tuple(range(fixed)),
+        "nodes.id",
+        f"must begin with 0 to {fixed - 1}, got {nodes.id[:fixed]}",
+    )
+    if set(nodes.activation[:inputs]) != {"identity"} or decode(nodes.bias)[:inputs].any():
+        needed = "activation identity and bias 0"
+        raise InvalidField("nodes", f"must have {needed} where they are inputs")
+    pairs = list(zip(connections.source, connections.target, strict=True))
+    refuse(
+        len(set(pairs)) < len(pairs), "connections", "must join each pair of nodes at most once"
+    )
+    if missing := set(connections.source + connections.target) - set(nodes.id):
+        raise InvalidField(
+            "connections", f"must join existing nodes, got {sorted(missing)[:5]}"
+        )
+    refuse(
+        any(target < inputs for target in connections.target),
+        "connections.target",
+        "must not be an input",
+    )
+    if not cycles:
+        _refuse_cycles(pairs)
+
+
+def _same_length(where: str, *columns) -> None:
+    lengths = [len(column) for column in columns]
+    refuse(len(set(lengths)) > 1, where, f"must have columns of one length, got {lengths}")
+
+
+def _increasing(where: str, numbers: tuple[int, ...]) -> None:
+    refuse(any(a >= b for a, b in pairwise(numbers)), where, "must increase strictly")
+
+
+def _refuse_cycles(pairs: list[tuple[int, int]]) -> None:
+    sorter = TopologicalSorter()
+    for source, target in pairs:
+        sorter.add(target, source)
+    try:
+        sorter.prepare()
+    except CycleError as error:
+        raise InvalidField("connections", "must be free of cycles") from error
+
 
 MAX_SEGMENTS = 32
 SHAPE_LIMITS = (
@@ -32,13 +134,15 @@ class Network(Part):
     encoding: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    control: Control | encodings.Grown | encodings.BodyGraph
+    control: Control | encodings.BodyGraph
     nodes: Nodes
     connections: Connections
 
     @model_validator(mode="after")
     def check(self) -> Self:
-        _check_ends(self, self.control)
+        for name in ("inputs", "outputs"):
+            needed, found = getattr(self.control, name), getattr(self, name)
+            refuse(found != needed, name, f"must be {list(needed)}, got {list(found)}")
         cycles = getattr(self.control, "recurrent", False)
         check_genes(len(self.inputs), len(self.outputs), self.nodes, self.connections, cycles)
         return self
@@ -49,13 +153,6 @@ class CPPN(Network):
 
     encoding: Literal["cppn"]
     control: Control
-
-
-class Grown(Network):
-    """The genes of a CPPN that grows a body and controls it."""
-
-    encoding: Literal["cppn-body"]
-    control: encodings.Grown
 
 
 class Segments(Part):
@@ -77,20 +174,26 @@ class Segments(Part):
         numbers = {name: decode(getattr(self, name)) for name, *_ in SHAPE_LIMITS}
         columns = {name: getattr(self, name) for name in type(self).model_fields} | numbers
         lengths = {name: len(column) for name, column in columns.items()}
-        if len(set(lengths.values())) > 1:
-            raise ValueError(f"`plan` must have columns of one length, got {lengths}")
-        if len(set(self.number)) < len(self.number):
-            raise ValueError(f"`plan.number` must differ, got {list(self.number)}")
+        refuse(
+            len(set(lengths.values())) > 1,
+            "plan",
+            f"must have columns of one length, got {lengths}",
+        )
+        refuse(
+            len(set(self.number)) < len(self.number),
+            "plan.number",
+            f"must differ, got {list(self.number)}",
+        )
         for row, parent in enumerate(self.parent):
             if parent >= max(row, 1):
-                raise ValueError(
-                    f"`plan.parent` must be an earlier row, got {parent} in row {row}"
+                raise InvalidField(
+                    "plan.parent", f"must be an earlier row, got {parent} in row {row}"
                 )
         for name, low, high in SHAPE_LIMITS:
             for value in numbers[name]:
                 if not low <= value <= high:
-                    raise ValueError(
-                        f"`plan.{name}` must be from {low:g} to {high:g}, got {value:g}"
+                    raise InvalidField(
+                        f"plan.{name}", f"must be from {low:g} to {high:g}, got {value:g}"
                     )
         return self
 
@@ -106,11 +209,12 @@ class Segments(Part):
         for name, limit in most.items():
             for value in getattr(self, name):
                 if not 1 <= value <= limit:
-                    raise ValueError(f"`plan.{name}` must be 1 to {limit}, got {value}")
-        if len(self.number) > body.segments:
-            raise ValueError(
-                f"`plan` must have at most {body.segments} segments, got {len(self.number)}"
-            )
+                    raise InvalidField(f"plan.{name}", f"must be 1 to {limit}, got {value}")
+        refuse(
+            len(self.number) > body.segments,
+            "plan",
+            f"must have at most {body.segments} segments, got {len(self.number)}",
+        )
 
 
 class BodyGraph(Network):
@@ -124,7 +228,7 @@ class BodyGraph(Network):
 class Vector(Part):
     """Genes that are numbers from −1 to 1."""
 
-    control: encodings.Direct | encodings.Weights | encodings.PluginControl
+    control: encodings.Direct | encodings.PluginControl
     values: str = Field(max_length=8 * MAX_GENES)
     """Base64 of float32."""
 
@@ -147,20 +251,6 @@ class Direct(Vector):
     control: encodings.Direct
 
 
-class Weights(Vector):
-    """The weights of a network with fixed layers."""
-
-    encoding: Literal["weights"]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    control: encodings.Weights
-
-    @model_validator(mode="after")
-    def check(self) -> Self:
-        _check_ends(self, self.control)
-        return self
-
-
 class PluginGenome(Vector):
     """Numbers that a plug-in turns into movements."""
 
@@ -169,11 +259,11 @@ class PluginGenome(Vector):
 
     @model_validator(mode="after")
     def check(self) -> Self:
-        if self.encoding != self.control.encoding:
-            raise ValueError(
-                f"`encoding` must be {self.control.encoding!r} as `control` has it, got "
-                f"{self.encoding!r}"
-            )
+        refuse(
+            self.encoding != self.control.encoding,
+            "encoding",
+            f"must be {self.control.encoding!r} as `control` has it, got {self.encoding!r}",
+        )
         return self
 
 
@@ -197,13 +287,6 @@ class GaitGenome(Gait):
     encoding: Literal["gait"]
 
 
-def _check_ends(genome: Network | Weights, control: NetworkInputs) -> None:
-    for name in ("inputs", "outputs"):
-        needed, found = getattr(control, name), getattr(genome, name)
-        if found != needed:
-            raise ValueError(f"`{name}` must be {list(needed)}, got {list(found)}")
-
-
 def _refuse_count(values: str, needed: int) -> None:
     if (found := len(decode(values))) != needed:
-        raise ValueError(f"`genome.values` must hold {needed} numbers, got {found}")
+        raise InvalidField("genome.values", f"must hold {needed} numbers, got {found}")

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...bodies.growth import Plan, State, plan_of, skeleton, sprout
 from ...naming import decoded
+from ..base import refuse
 from ..body import GrownBody
 
 
@@ -68,8 +69,9 @@ def plan_drawing(identity: Mapping[str, Any]) -> PlanDrawing:
     Raises `ValueError` if the genes are no plan.
     """
     genome = identity["genome"]
-    if "plan" not in genome:
-        raise ValueError(f"`genome.encoding` must hold a plan, got {genome['encoding']!r}")
+    refuse(
+        "plan" not in genome, "genome.encoding", f"must hold a plan, got {genome['encoding']!r}"
+    )
     capacity = GrownBody.model_validate(identity["body"]).capacity
     plan = plan_of(decoded(genome["plan"]), capacity.segments)
     state = sprout(plan, capacity)
@@ -77,7 +79,7 @@ def plan_drawing(identity: Mapping[str, Any]) -> PlanDrawing:
     rows = range(int(plan.used.sum()))
     return PlanDrawing(
         nodes=_nodes(state),
-        edges=[(int(a), int(b)) for a, b in bones.edges[bones.there]],
+        edges=[(int(a), int(b)) for a, b in bones.edges[bones.edge_present]],
         segments=[_segment(plan, row, int(state.copies[row])) for row in rows],
     )
 

@@ -7,43 +7,57 @@ from typing import Any
 
 import numpy as np
 
-from ...spec.differences import short, value_text
+from ...archive.curves import SHARES
+from ...spec.paths import key, number_text, short, value_texts
 from ...statistics import Aggregates, Comparison
 from ...statistics.comparison import Result, Summary
 from ...statistics.effects import quartiles
+from ...statistics.groups import distinct
 from .curves import DASHES, curve_label
-from .style import COLOURS, GREY, INK, blank, lettered, look
+from .style import (
+    COLOURS,
+    INK,
+    blank,
+    drawable,
+    legend_above,
+    legend_of_groups,
+    lettered,
+    look,
+    plain,
+)
 
 GOLDEN = (5**0.5 - 1) / 2
-"""Multiples of it lie apart from each other, whatever their number."""
+"""Golden ratio: its multiples modulo 1 stay apart, whatever their number."""
 SPREAD = 0.44
 """Width over which the points of a group lie, of the distance between groups."""
-PER_CENT = ("coverage", "corrected_coverage", "hit_rate")
 LETTER = 1.5
 """Width of a letter of a tick, with the room beside it, in mm."""
 TALLEST = 62.0
-"""Of a panel, in mm."""
+"""Greatest height of a panel, in mm."""
 COLUMNS = 3
 """Panels beside each other."""
 DECADE = 8
 """A parameter whose values span this factor has a logarithmic axis."""
 
 
-def boxes(found: Comparison, *, width: float = 178.0) -> Any:
+def boxes(comparison: Comparison, *, width: float = 178.0) -> Any:
     """Draw a panel for each measure: every run as a point, the box between the quartiles of
     each group, and its median as a line. Runs that do not reach a value stand at the top, and
     archives without elites at the bottom."""
-    figure, panels = _panels(len(found.results), width)
-    names, common = _ticks([group.name for group in found.groups])
+    figure, panels = _panels(len(comparison.results), width)
+    names, common = _ticks([drawable(group.name) for group in comparison.groups])
     room = max(8, int(width / min(COLUMNS, len(panels)) / len(names) / LETTER))
-    for panel, result in zip(panels, found.results, strict=True):
+    for panel, result in zip(panels, comparison.results, strict=True):
         for number, one in enumerate(result.summaries):
             _box(panel, number, one, _factor(result))
             places = number + _apart(one.count)
             _mark_missing(panel, places, one, COLOURS[number % len(COLOURS)])
-        panel.set_xticks(range(len(names)), ["\n".join(wrap(name, room)) for name in names])
-        panel.set(xlim=(-0.6, len(names) - 0.4), ylabel=_title(found, result), xlabel=common)
-        _plain(panel)
+        ticks = ["\n".join(wrap(name, room)) for name in names]
+        panel.set_xticks(range(len(names)), ticks, parse_math=False)
+        panel.set(
+            xlim=(-0.6, len(names) - 0.4), ylabel=_title(comparison, result), xlabel=common
+        )
+        plain(panel, "y")
     lettered(panels)
     return figure
 
@@ -106,45 +120,37 @@ def _mark_missing(panel: Any, places: np.ndarray, one: Summary, colour: Any) -> 
 
 def _factor(result: Result) -> float:
     measure = result.measure
-    return 100.0 if measure.curve in PER_CENT and measure.reaches is None else 1.0
+    return 100.0 if measure.curve in SHARES and measure.reaches is None else 1.0
 
 
-def _title(found: Comparison, result: Result) -> str:
+def _title(comparison: Comparison, result: Result) -> str:
     measure = result.measure
-    runs = [run for group in found.groups for run in group.runs]
+    runs = [run for group in comparison.groups for run in group.runs]
     if measure.reaches is not None:
         title = curve_label(measure.curve, runs).partition(" [")[0]
-        return f"Evaluations to {title[0].lower()}{title[1:]} {measure.reaches:g}"
+        return f"Evaluations to {title[0].lower()}{title[1:]} {number_text(measure.reaches)}"
     title = curve_label(measure.curve, runs)
     return title if measure.at is None else f"{title}, {measure.at:,} evaluations"
 
 
-def _plain(panel: Any) -> None:
-    panel.set_axisbelow(True)
-    panel.grid(color=GREY, alpha=0.18, lw=0.4, axis="y")
-    panel.spines[["top", "right"]].set_visible(False)
-
-
-def parameter(found: Comparison, path: str, *, width: float = 178.0) -> Any:
+def parameter(comparison: Comparison, path: str, *, width: float = 178.0) -> Any:
     """Draw each measure against a field of the spec: every run, the median, and a band between
     the quartiles; a line for each combination of the other fields in which groups differ.
 
     Raises `ValueError` for a field that is no number, or does not differ.
     """
-    lines = series(found, path)
+    lines = series(comparison, path)
     named = len(lines) > 1
-    figure, panels = _panels(len(found.results), width, 7.0 * named)
-    for panel, result in zip(panels, found.results, strict=True):
+    figure, panels = _panels(len(comparison.results), width, 7.0 * named)
+    for panel, result in zip(panels, comparison.results, strict=True):
         for number, (name, members) in enumerate(lines.items()):
             _line(panel, members, result, number, name)
         _along(panel, path, [x for members in lines.values() for x, _ in members])
-        panel.set(ylabel=_title(found, result))
-        _plain(panel)
+        panel.set(ylabel=_title(comparison, result))
+        plain(panel, "y")
     lettered(panels)
     if named:
-        handles, labels = panels[0].get_legend_handles_labels()
-        place = {"loc": "outside upper center", "ncols": min(3, len(lines))}
-        figure.legend(handles, labels, frameon=False, **place)
+        legend_above(figure, panels[0], len(lines))
     return figure
 
 
@@ -152,21 +158,27 @@ Members = list[tuple[float, int]]
 """The field's value of each group, and the group's number."""
 
 
-def series(found: Comparison, path: str) -> dict[str, Members]:
+def series(comparison: Comparison, path: str) -> dict[str, Members]:
     """Return the groups along a field, by the other fields in which they differ."""
-    if path not in found.differences:
-        known = ", ".join(found.differences) or "none"
+    if path not in comparison.differences:
+        known = ", ".join(comparison.differences) or "none"
         raise ValueError(
             f"a parameter must differ between groups (it may be {known}), got {path}"
         )
-    others = [one for one in found.differences if one != path]
-    lines: dict[str, Members] = {}
-    for number, value in enumerate(found.differences[path]):
+    others = {one: own for one, own in comparison.differences.items() if one != path}
+    # Labels are cut, so that two lines may have one.
+    lines: dict[tuple[str, ...], Members] = {}
+    for number, value in enumerate(comparison.differences[path]):
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise ValueError(f"a parameter must be a number in every group, got {value!r}")
-        parts = [f"{short(one)} {value_text(found.differences[one][number])}" for one in others]
-        lines.setdefault(", ".join(parts), []).append((float(value), number))
-    return {name: sorted(members) for name, members in lines.items()}
+        line = tuple(key(own[number]) for own in others.values())
+        lines.setdefault(line, []).append((float(value), number))
+    texts = {one: value_texts(own) for one, own in others.items()}
+    names = [
+        ", ".join(f"{short(one)} {own[members[0][1]]}" for one, own in texts.items())
+        for members in lines.values()
+    ]
+    return dict(zip(distinct(names), map(sorted, lines.values()), strict=True))
 
 
 def _line(panel: Any, members: Members, result: Result, number: int, name: str) -> None:
@@ -179,7 +191,7 @@ def _line(panel: Any, members: Members, result: Result, number: int, name: str) 
     )
     mark, dash = look(number), DASHES[number % len(DASHES)]
     panel.fill_between(places, low, high, color=mark["color"], alpha=0.22, lw=0)
-    panel.plot(places, middle, **mark, ls=dash, lw=1.2, ms=3.5, label=name)
+    panel.plot(places, middle, **mark, ls=dash, lw=1.2, ms=3.5, label=drawable(name))
     for place, one in zip(places, summaries, strict=True):
         values = factor * np.array(one.values)
         panel.plot([place] * len(values), values, ".", color=mark["color"], ms=2.5, alpha=0.7)
@@ -201,26 +213,27 @@ def _along(panel: Any, path: str, places: Sequence[float]) -> None:
     panel.set_xlabel(name[0].upper() + name[1:])
 
 
-def profiles(found: Aggregates, *, width: float = 85.0) -> Any:
+def profiles(aggregates: Aggregates, *, width: float = 85.0) -> Any:
     """Draw performance profiles: the share of runs above a score, with 95 % bands.
 
     Agarwal et al. 2021, arXiv:2108.13264; scores are relative to the first group's median.
     """
     figure = blank(width, 0.75 * width)
     panel = figure.add_subplot()
-    for number, one in enumerate(found.groups):
+    for number, one in enumerate(aggregates.groups):
         colour = COLOURS[number % len(COLOURS)]
         if one.band:
-            panel.fill_between(found.scores, *one.band, color=colour, alpha=0.22, lw=0)
+            panel.fill_between(aggregates.scores, *one.band, color=colour, alpha=0.22, lw=0)
         dash = DASHES[number % len(DASHES)]
-        panel.plot(found.scores, one.profile, color=colour, lw=1.2, ls=dash, label=one.group)
+        line = {"color": colour, "lw": 1.2, "ls": dash, "label": drawable(one.group)}
+        panel.plot(aggregates.scores, one.profile, **line)
     panel.axhline(0.5, color=INK, lw=0.5, ls=(0, (1, 2)))
-    first = found.groups[0].group
-    title = found.measure.title
+    first = aggregates.groups[0].group
+    title = aggregates.measure.title
     panel.set(
         xlabel=f"{title[0].upper()}{title[1:]}, relative to {first}", ylabel="Share of runs"
     )
-    panel.set(ylim=(0, 1.02), xlim=(0, found.scores[-1]))
-    panel.legend(frameon=False)
-    _plain(panel)
+    panel.set(ylim=(0, 1.02), xlim=(0, aggregates.scores[-1]))
+    legend_of_groups(panel)
+    plain(panel, "y")
     return figure

@@ -1,15 +1,15 @@
 """Curves of runs: QD score, coverage and best fitness, with bands over seeds."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from ...archive.curves import CURVES, SHARES, curve_title
+from ...statistics import Group
 from ...statistics.measures import values_of
-from .axes import fitness_label
-from .groups import Group, spread
-from .reading import Described
-from .style import COLOURS, GREY, blank, lettered
+from .reading import Described, fitness_label, spread
+from .style import COLOURS, blank, drawable, legend_above, lettered, plain
 
 SHOWN = ("best", "coverage", "qd_score")
 
@@ -30,6 +30,7 @@ def curves(
     single runs.
     """
     _refuse_unknown(shown, groups)
+    # A legend above the panels takes 7 mm.
     figure = blank(width, max(45.0, 0.72 * width / len(shown)) + 7 * (len(groups) > 1))
     panels = figure.subplots(1, len(shown), squeeze=False)[0]
     for panel, name in zip(panels, shown, strict=True):
@@ -38,40 +39,50 @@ def curves(
         _dress(panel, name, against, groups)
     lettered(panels)
     if len(groups) > 1:
-        handles, labels = panels[0].get_legend_handles_labels()
-        place = "outside upper center"
-        figure.legend(handles, labels, loc=place, ncols=min(3, len(groups)), frameon=False)
+        legend_above(figure, panels[0], len(groups))
     return figure
 
 
 def _refuse_unknown(shown: Sequence[str], groups: Sequence[Group]) -> None:
     runs = [run for group in groups for run in group.runs]
-    there = [name for name in runs[0].curves if all(name in run.curves for run in runs)]
+    common = [name for name in runs[0].curves if all(name in run.curves for run in runs)]
     if not shown:
-        raise ValueError(f"`shown` must be one or more of {', '.join(there)}, got none.")
+        raise ValueError(f"`shown` must be one or more of {', '.join(common)}, got none.")
     for name in shown:
-        if name not in there:
-            raise ValueError(f"`shown` must be of {', '.join(there)}, got {name!r}.")
+        if name not in common:
+            raise ValueError(f"`shown` must be of {', '.join(common)}, got {name!r}.")
 
 
 def _group(panel: Any, group: Group, name: str, against: str, number: int) -> None:
     colour, dash = COLOURS[number % len(COLOURS)], DASHES[number % len(DASHES)]
-    factor = 100 if name in ("coverage", "corrected_coverage", "hit_rate") else 1  # Per cent.
+    factor = 100 if name in SHARES else 1  # Per cent.
     values = [factor * values_of(run.curves, name) for run in group.runs]
     places = [_places(run.curves, against) for run in group.runs]
     if len(values) > 1:
         for x, y in zip(places, values, strict=True):
-            panel.plot(x, y, color=colour, lw=0.4, alpha=0.55, label="_run")
-    low, middle, high = spread(values)
-    along = np.median(np.stack([x[: len(middle)] for x in places]), axis=0)
+            known = ~np.isnan(y)
+            _line(panel, x[known], y[known], color=colour, lw=0.4, alpha=0.55, label="_run")
+    # Corrected curves have numbers where elites were evaluated again: lines lead through these.
+    length = min(map(len, values))
+    known = ~np.isnan([y[:length] for y in values]).any(axis=0)
+    if not known.any():
+        runs = f"all runs of {group.name!r}" if group.name else "all runs"
+        raise ValueError(f"`shown` needs a generation with `{name}` of {runs}, got none.")
+    low, middle, high = spread([y[:length][known] for y in values])
+    along = np.median([x[:length][known] for x in places], axis=0)
     if len(values) > 1:
         panel.fill_between(along, low, high, color=colour, alpha=0.22, lw=0, label="_quartiles")
     seeds = f"n = {len(group.runs)}"
-    label = f"{group.label} ({seeds})" if group.label else seeds
-    panel.plot(along, middle, color=colour, lw=1.2, ls=dash, label=label)
+    label = f"{drawable(group.name)} ({seeds})" if group.name else seeds
+    _line(panel, along, middle, color=colour, lw=1.2, ls=dash, label=label)
 
 
-def _places(columns: dict[str, np.ndarray], against: str) -> np.ndarray:
+def _line(panel: Any, along: np.ndarray, values: np.ndarray, **look: Any) -> None:
+    """Draw a line; a single point, which no line shows, as a dot."""
+    panel.plot(along, values, marker="." if np.isfinite(values).sum() == 1 else "", **look)
+
+
+def _places(columns: Mapping[str, np.ndarray], against: str) -> np.ndarray:
     if against not in ("evaluations", "generations"):
         raise ValueError(f"`against` must be evaluations or generations, got {against!r}.")
     evaluations = columns["evaluations"]
@@ -89,9 +100,7 @@ def _dress(panel: Any, name: str, against: str, groups: Sequence[Group]) -> None
     )
     panel.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.0f}"))
-    panel.set_axisbelow(True)
-    panel.grid(color=GREY, alpha=0.18, lw=0.4)
-    panel.spines[["top", "right"]].set_visible(False)
+    plain(panel)
 
 
 def curve_label(name: str, runs: Sequence[Described]) -> str:
@@ -100,12 +109,11 @@ def curve_label(name: str, runs: Sequence[Described]) -> str:
     fitness = labels.pop() if len(labels) == 1 else "Fitness"
     title, _, unit = fitness.partition(" [")
     unit = f" [{unit}" if unit else ""
-    return {
-        "best": f"Best {title[0].lower()}{title[1:]}{unit}",
-        "mean": f"Mean {title[0].lower()}{title[1:]}{unit}",
-        "coverage": "Coverage [%]",
-        "qd_score": f"QD score{unit}",
-        "corrected_qd_score": f"Corrected QD score{unit}",
-        "corrected_coverage": "Corrected coverage [%]",
-        "hit_rate": "Repeats in their own cell [%]",
-    }.get(name, name.replace("_", " ").capitalize())
+    if name in ("best", "mean"):
+        return f"{name.capitalize()} {title[0].lower()}{title[1:]}{unit}"
+    if name in SHARES:
+        unit = " [%]"
+    elif name not in CURVES or CURVES[name].of == "count":
+        unit = ""
+    shown = curve_title(name)
+    return f"{shown[0].upper()}{shown[1:]}{unit}"

@@ -2,19 +2,18 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, Concatenate, ParamSpec
 
-from ...archive.physical import of_archive
-from ...archive.quantities import Real, shown
-from . import caption, curves, groups, lineage, maps, saving, sheet, strips
-from .lineage import family
-from .reading import Archive, Described, read
+import numpy as np
+
+from ...quantities.real import Real, shown
+from ...quantities.scales import of_archive
+from ...statistics import Aggregates, Comparison, Group
+from . import caption, compared, curves, lineage, maps, sheet, strips, style
+from .reading import Archive, Described, grouped, read
 from .style import millimetres, styled
-from .verdicts import verdicts
-
-if TYPE_CHECKING:
-    from ...statistics import Aggregates, Comparison
 
 
 @dataclass(frozen=True)
@@ -41,150 +40,149 @@ class Print:
             return ""
         scales, table = of_archive(data, self.real)
         speeds = table.get("speed_m_per_s")
-        fastest = 0 if speeds is None else int(speeds.argmax())
-        reached = (
-            "" if speeds is None else f" The fastest swim {shown(speeds[fastest], 'm/s')}."
+        if speeds is None:
+            return f" {scales[0].sentence()}"
+        if np.isnan(speeds).all():
+            return " No elite did two strokes: the real time of one is unknown."
+        fastest = int(np.nanargmax(speeds))
+        return (
+            f" {scales[fastest].sentence()} The fastest swim {shown(speeds[fastest], 'm/s')}."
         )
-        return f" {scales[fastest].sentence()}{reached}"
 
-    def publish(self, figure, out: Path, text: str) -> list[Path]:
-        """Write a figure with its caption; return the paths."""
-        return saving.publish(figure, out, text, under=self.under, tex=self.tex, dpi=self.dpi)
+    @property
+    def mm(self) -> float:
+        """Return the width in mm. Raises `ValueError` for a width of another form."""
+        return millimetres(self.width)
 
 
-def archive(
-    file: Path, out: Path, options: Print, axes: list[str] | None, colour: str
-) -> list[Path]:
+P = ParamSpec("P")
+
+
+def printed(
+    draw: Callable[Concatenate[Print, P], tuple[Any, str]],
+) -> Callable[Concatenate[Path, Print, P], list[Path]]:
+    """Wrap a function that returns a figure and its caption: write both, return the paths."""
+
+    @wraps(draw)
+    def write(out: Path, options: Print, *args: P.args, **kwargs: P.kwargs) -> list[Path]:
+        style.kind(out)  # A wrong ending is refused before minutes of simulation.
+        with styled():
+            figure, text = draw(options, *args, **kwargs)
+            how = {"under": options.under, "tex": options.tex, "dpi": options.dpi}
+            return style.publish(figure, out, text, **how)
+
+    return write
+
+
+@printed
+def archive(options: Print, file: Path, axes: list[str] | None, colour: str):
     """Draw the map of an archive file."""
-    saving.kind(out)
-    found = open_archive(file)
+    return _map(options, open_archive(file), file.read_bytes(), axes, colour)
+
+
+def picture(data: bytes, options: Print) -> bytes:
+    """Return the map of an archive as a PNG.
+
+    Raises `ValueError` without elites, and `ImportError` without matplotlib.
+    """
     with styled():
-        width, palette = millimetres(options.width), options.palette
-        figure = maps.archive(found, axes=axes, colour=colour, colours=palette, width=width)
-        text = caption.of_archive(found, axes) + options.physical(file.read_bytes())
-        return options.publish(figure, out, text)
+        figure, text = _map(options, read(data), data, None, "fitness")
+        return style.encoded(figure, ".png", caption=text, dpi=options.dpi)
 
 
-def progress(
-    found: Sequence[groups.Group],
-    out: Path,
-    options: Print,
-    names: Sequence[str],
-    against: str,
-) -> list[Path]:
+def _map(
+    options: Print, archive: Archive, data: bytes, axes: list[str] | None, colour: str
+) -> tuple[Any, str]:
+    look = {"colours": options.palette, "width": options.mm}
+    figure = maps.archive(archive, axes=axes, colour=colour, **look)
+    return figure, caption.of_archive(archive, axes) + options.physical(data)
+
+
+@printed
+def progress(options: Print, groups: Sequence[Group], names: Sequence[str], against: str):
     """Draw the curves with these names of groups of runs."""
-    from . import real  # Loads SciPy.
-
-    saving.kind(out)
-    with styled():
-        width = millimetres(options.width)
-        figure = curves.curves(found, shown=names, against=against, width=width)
-        text = caption.of_curves(found, names)
-        if options.real is not None:
-            text += real.of_curves(found, names, options.real)
-        return options.publish(figure, out, text)
+    figure = curves.curves(groups, shown=names, against=against, width=options.mm)
+    in_units = caption.curves_in_units(groups, names, options.real) if options.real else ""
+    return figure, caption.of_curves(groups, names, against) + in_units
 
 
-def boxes(found: "Comparison", out: Path, options: Print) -> list[Path]:
+@printed
+def boxes(options: Print, comparison: Comparison):
     """Draw every run of compared groups, with medians and quartiles."""
-    from . import compared, compared_caption  # Load SciPy.
-
-    saving.kind(out)
-    with styled():
-        figure = compared.boxes(found, width=millimetres(options.width))
-        text = compared_caption.of_boxes(found) + _in_units(found, options)
-        return options.publish(figure, out, text)
+    figure = compared.boxes(comparison, width=options.mm)
+    return figure, caption.of_boxes(comparison) + _in_units(comparison, options)
 
 
-def parameter(found: "Comparison", path: str, out: Path, options: Print) -> list[Path]:
+@printed
+def parameter(options: Print, comparison: Comparison, path: str):
     """Draw measures of compared groups against a field of their specs."""
-    from . import compared, compared_caption  # Load SciPy.
-
-    saving.kind(out)
-    with styled():
-        figure = compared.parameter(found, path, width=millimetres(options.width))
-        text = compared_caption.of_parameter(found, path) + _in_units(found, options)
-        return options.publish(figure, out, text)
+    figure = compared.parameter(comparison, path, width=options.mm)
+    return figure, caption.of_parameter(comparison, path) + _in_units(comparison, options)
 
 
-def _in_units(found: "Comparison", options: Print) -> str:
+def _in_units(comparison: Comparison, options: Print) -> str:
     """Return a sentence on physical units of compared groups, if asked for."""
-    from . import real  # Loads SciPy.
-
-    return "" if options.real is None else real.of_comparison(found, options.real)
+    return caption.comparison_in_units(comparison, options.real) if options.real else ""
 
 
-def profiles(found: "Aggregates", first: Described, out: Path, options: Print) -> list[Path]:
+@printed
+def profiles(options: Print, aggregates: Aggregates, first: Described):
     """Draw performance profiles over tasks; `first` is a run whose spec the caption states."""
-    from . import compared, compared_caption  # Load SciPy.
-
-    saving.kind(out)
-    with styled():
-        figure = compared.profiles(found, width=millimetres(options.width))
-        return options.publish(figure, out, compared_caption.of_profiles(found, first))
+    return compared.profiles(aggregates, width=options.mm), caption.of_profiles(
+        aggregates, first
+    )
 
 
+@printed
 def contact(
-    file: Path,
-    out: Path,
     options: Print,
+    file: Path,
     axes: list[str] | None,
     grid: tuple[int, int],
     moments: int,
     tell: Callable[[int, int], None] = lambda done, of: None,
     audits: Sequence[Path] = (),
-) -> list[Path]:
+):
     """Draw the contact sheet of an archive file; `grid` has columns and rows.
 
     `audits` are reports whose verdicts the sheet states, where it shows the creature.
     """
-    from . import motions  # Loads JAX.
-
-    saving.kind(out)
-    trusted = verdicts(audits)
+    trusted, data = sheet.verdicts(audits), file.read_bytes()
     found, columns, rows = open_archive(file), *grid
     plan = sheet.layout(found, axes=axes, columns=columns, rows=rows)
     cells = [int(found.cells[region.elite]) for region in plan.regions]
-    moved = motions.motions(
-        file.read_bytes(), cells, trusted, lambda done: tell(done, len(cells))
-    )
-    with styled():
-        width, palette = millimetres(options.width), options.palette
-        figure = sheet.sheet(found, plan, moved, moments=moments, colours=palette, width=width)
-        text = caption.of_sheet(found, plan, moved, moments)
-        return options.publish(figure, out, text + options.physical(file.read_bytes()))
+    moved = sheet.motions(data, cells, trusted, lambda done: tell(done, len(cells)))
+    look = {"colours": options.palette, "width": options.mm}
+    figure = sheet.sheet(found, plan, moved, moments=moments, **look)
+    return figure, caption.of_sheet(found, plan, moved, moments) + options.physical(data)
 
 
-def kinds(
-    files: Sequence[Path], out: Path, options: Print, most: int, moments: int
-) -> list[Path]:
+@printed
+def kinds(options: Print, files: Sequence[Path], most: int, moments: int):
     """Draw a stroke of an elite of each kind of motion in archive files, at most `most`.
 
     Raises `ValueError` for files whose specs differ in more than the seed.
     """
-    saving.kind(out)
-    runs, *others = groups.grouped([open_archive(file) for file in files])
+    runs, *others = grouped([open_archive(file) for file in files])
     if others:
         raise ValueError(
-            f"`FILE` must differ in the seed alone, got {runs.label}; {others[0].label}."
+            f"`FILE` must differ in the seed alone, got {runs.name}; {others[0].name}."
         )
     shown = strips.exemplars([file.read_bytes() for file in files], most)
-    with styled():
-        width, palette = millimetres(options.width), options.palette
-        figure = strips.strips(shown, moments=moments, colours=palette, width=width)
-        return options.publish(figure, out, caption.of_strips(runs, shown, moments))
+    look = {"colours": options.palette, "width": options.mm}
+    figure = strips.strips(shown, moments=moments, **look)
+    return figure, caption.of_strips(runs, shown, moments)
 
 
-def tree(file: Path, out: Path, options: Print, cell: int | None) -> list[Path]:
+@printed
+def tree(options: Print, file: Path, cell: int | None):
     """Draw the descent of an archive's elites, and of one of them."""
-    saving.kind(out)
-    found = open_archive(file)
-    related = family(found)
-    ancestors = len(related.ancestors([related.tips[found.row(cell)]])) - 1
-    with styled():
-        width = millimetres(options.width)
-        figure = lineage.lineage(found, cell=cell, colours=options.palette, width=width)
-        return options.publish(figure, out, caption.of_lineage(found, cell, ancestors))
+    archive = open_archive(file)
+    related = lineage.family(archive)
+    ancestors = len(related.ancestors([related.tips[archive.row(cell)]])) - 1
+    look = {"colours": options.palette, "width": options.mm}
+    figure = lineage.lineage(archive, cell=cell, **look)
+    return figure, caption.of_lineage(archive, cell, ancestors)
 
 
 def open_archive(file: Path) -> Archive:

@@ -12,7 +12,7 @@ from ...archive import file
 from ...build import build_descent
 from ...device import compiler_options
 from ...genomes import Vector
-from .style import COLOURS, GREY, INCH, blank, tidy
+from .style import COLOURS, GREY, INCH, blank, drawable, legend_of_groups, tidy
 
 MOMENTS = {"early": 0.1, "middle": 0.4, "late": 1.0}
 """Moments of the figure, as shares of the simulation."""
@@ -29,7 +29,7 @@ def folds(data: bytes) -> Any:
     """
     tree, attributes = file.load(data)
     chosen = spec.Folding.model_validate_json(attributes["spec"])
-    names = [target.name for target in chosen.targets]
+    names = [drawable(target.name) for target in chosen.targets]
     genes, pictures, least = (tree["folds"][name] for name in ("genes", "picture", "loss"))
     if not np.isfinite(least).any():
         raise ValueError("a folding with an update is needed, got one without.")
@@ -43,7 +43,7 @@ def folds(data: bytes) -> Any:
         top, column = number // COLUMNS * rows, number % COLUMNS
         panels = [figure.add_subplot(grid[top + i, column]) for i in range(rows)]
         _column(panels, courses[number], pictures[number], chosen)
-        panels[0].set_title(f"{name}: {least[number]:.4f}", fontsize=8)
+        panels[0].set_title(f"{name}: {least[number]:.4f}", fontsize=8, parse_math=False)
         if column == 0:
             for panel, label in zip(panels, (*MOMENTS, "picture"), strict=True):
                 panel.set_ylabel(label, fontsize=8)
@@ -91,4 +91,4 @@ def _losses(panel: Any, losses: np.ndarray, names: list[str]) -> None:
     panel.set(yscale="log", xlabel="update", ylabel="loss")
     tidy(panel)
     if len(names) > 1:
-        panel.legend(fontsize=7, frameon=False, ncols=5)
+        legend_of_groups(panel, fontsize=7, ncols=5)

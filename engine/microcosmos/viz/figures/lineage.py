@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .axes import fitness_label
-from .reading import Archive
+from .reading import Archive, fitness_label
 from .style import GREY, INK, blank, colour_bar, shades
 
 NO_ENTRY = -1
@@ -37,9 +36,9 @@ class Family:
         return sorted(found, reverse=True)
 
 
-def family(found: Archive) -> Family:
+def family(archive: Archive) -> Family:
     """Return the family of an archive's elites. Raises `ValueError` if one is lacking."""
-    columns = found.lineage
+    columns = archive.lineage
     names = [bytes(row) for row in columns["creature"]]
     number: dict[bytes, int] = {}
     for entry, name in enumerate(names):
@@ -47,7 +46,7 @@ def family(found: Archive) -> Family:
     parents = [[number.get(bytes(p), NO_ENTRY) for p in row] for row in columns["parents"]]
     parents = [row if row[0] != NO_ENTRY else row[::-1] for row in parents]
     latest = dict(zip(columns["cell"].tolist(), range(len(names)), strict=True))
-    lost = [int(cell) for cell in found.cells if int(cell) not in latest]
+    lost = [int(cell) for cell in archive.cells if int(cell) not in latest]
     if lost:
         raise ValueError(
             f"`lineage` must hold every elite; the elite of cell {lost[0]} is missing"
@@ -57,18 +56,18 @@ def family(found: Archive) -> Family:
         generation=columns["generation"],
         fitness=columns["fitness"].astype(float),
         cell=columns["cell"],
-        tips=np.array([latest[int(cell)] for cell in found.cells]),
+        tips=np.array([latest[int(cell)] for cell in archive.cells]),
     )
 
 
-def heights(found: Family, entries: list[int]) -> dict[int, float]:
+def heights(tree: Family, entries: list[int]) -> dict[int, float]:
     """Return the height of each entry: childless ones evenly, others between their children.
 
     A child belongs to its first parent. `entries` include all first parents.
     """
     children: dict[int, list[int]] = {NO_ENTRY: []}
     for entry in sorted(entries):
-        children.setdefault(int(found.parents[entry, 0]), []).append(entry)
+        children.setdefault(int(tree.parents[entry, 0]), []).append(entry)
     places, ends = {}, 0
     left = [(root, False) for root in reversed(children[NO_ENTRY])]
     while left:
@@ -89,7 +88,7 @@ OTHERS = "#a9b4b9"
 
 
 def lineage(
-    found: Archive,
+    archive: Archive,
     *,
     cell: int | None = None,
     colours: str = "viridis",
@@ -102,8 +101,8 @@ def lineage(
     """
     from matplotlib.collections import LineCollection
 
-    tree = family(found)
-    own = int(tree.tips[found.row(cell)])
+    tree = family(archive)
+    own = int(tree.tips[archive.row(cell)])
     above = tree.ancestors([own])
     whole = tree.ancestors([*tree.tips.tolist(), *above], both=False)
     places = heights(tree, whole)
@@ -113,7 +112,7 @@ def lineage(
     values = tree.fitness[above]
     colouring = shades(values, colours)
     _branches(panel, tree, places, whole, colors=[OTHERS], linewidths=0.4, zorder=1)
-    last = max(int(tree.generation.max()), len(found.curves["best"]))
+    last = max(int(tree.generation.max()), len(archive.curves["best"]))
     tips = tree.tips.tolist()
     alive = [[(tree.generation[tip], places[tip]), (last, places[tip])] for tip in tips]
     dots = {"colors": [OTHERS], "linewidths": 0.3, "linestyles": [(0, (1, 2))]}
@@ -126,7 +125,7 @@ def lineage(
     panel.scatter(x, y, s=9, c=colour, edgecolors=INK, linewidths=0.4, zorder=4)
     panel.scatter([x[0]], [y[0]], s=34, facecolors="none", edgecolors=INK, lw=0.8, zorder=5)
     _dress(panel, last)
-    colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=28)
+    colour_bar(panel, colouring, fitness_label(archive), pad=0.01, aspect=28)
     return figure
 
 
@@ -139,6 +138,7 @@ def _branches(
     for entry in entries:
         parent, x, y = int(tree.parents[entry, 0]), tree.generation[entry], places[entry]
         if parent == NO_ENTRY:
+            # A root has no branch, but keeps its place: colours are given by entry.
             start = (x, y)
             lines.append([start, start, start])
         else:

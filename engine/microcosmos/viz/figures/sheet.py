@@ -1,16 +1,35 @@
-"""The contact sheet of an archive: the fittest swimmer of each region, over the axes."""
+"""The contact sheet of an archive: the fittest swimmer of each region, simulated anew."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .axes import Axis, chosen, fitness_label
+from ...json_text import read_json
+from ..replay_file import read_replay
 from .maps import fittest
-from .reading import Archive
+from .reading import Archive, Axis, chosen, fitness_label, read
 from .style import GREY, INK, PALE, blank, colour_bar, shades
-from .verdicts import WORDS
+
+WORDS = {True: "trusted", False: "not trusted"}
+
+
+def verdicts(reports: Sequence[Path]) -> dict[str, bool]:
+    """Return the verdict on each audited creature, by its hash.
+
+    Raises `ValueError` for a file that is not the report of an audit.
+    """
+    trusted = {}
+    for path in reports:
+        try:
+            report = read_json(path.read_bytes())
+            trusted[report["creature"]] = bool(report["verdict"]["trusted"])
+        except (KeyError, TypeError, ValueError) as error:
+            needed = "a report of `microcosmos audit FILE --out REPORT`"
+            raise ValueError(f"`--audit` needs {needed}, got {path}: {error}") from error
+    return trusted
 
 
 @dataclass(frozen=True)
@@ -47,13 +66,13 @@ class Motion:
 
 
 def layout(
-    found: Archive, *, axes: list[str] | None = None, columns: int = 6, rows: int = 4
+    archive: Archive, *, axes: list[str] | None = None, columns: int = 6, rows: int = 4
 ) -> Layout:
     """Divide the occupied part of two axes into equal regions, each with its fittest elite.
 
     Raises `ValueError` for a single axis.
     """
-    along = chosen(found, axes)
+    along = chosen(archive, axes)
     if len(along) != 2:
         raise ValueError(
             "`axes` must be two for a sheet, such as --axes bending_effort,path_length"
@@ -61,15 +80,18 @@ def layout(
     for name, value in (("columns", columns), ("rows", rows)):
         if not 1 <= value <= 20:
             raise ValueError(f"`{name}` must be from 1 to 20, got {value}.")
-    places = np.stack([axis.places(found.measures[axis.name]) for axis in along])
+    places = np.stack([axis.places(archive.measures[axis.name]) for axis in along])
+    # The sheet ends at whole bins, so that regions of a grid are made of cells.
     bins = np.array([axis.bins for axis in along])
     low = np.floor(places.min(1) * bins + 1e-9)
     high = np.maximum(np.ceil(places.max(1) * bins - 1e-9), low + 1)
     ends = np.stack([low, high], 1) / bins[:, None]
     share = (places - ends[:, :1]) / np.diff(ends)
     counts = np.array([[columns], [rows]])
-    there = np.clip((share * counts).astype(int), 0, counts - 1)
-    regions = tuple(Region(*map(int, (*there[:, i], i))) for i in fittest(found, there))
+    region_of = np.clip((share * counts).astype(int), 0, counts - 1)
+    regions = tuple(
+        Region(*map(int, (*region_of[:, i], i))) for i in fittest(archive, region_of)
+    )
     return Layout((along[0], along[1]), ends, columns, rows, regions)
 
 
@@ -77,13 +99,13 @@ def numerals(count: int) -> list[str]:
     """Return i, ii, iii, iv …, the paper's numerals for gaits."""
     digits = (("c", 100), ("xc", 90), ("l", 50), ("xl", 40), ("x", 10), ("ix", 9), ("v", 5),
               ("iv", 4), ("i", 1))  # fmt: skip
-    found = []
+    names = []
     for number in range(1, count + 1):
         text = ""
         for letters, value in digits:
             text, number = text + letters * (number // value), number % value
-        found.append(text)
-    return found
+        names.append(text)
+    return names
 
 
 def reading_order(regions: Sequence[Region]) -> list[int]:
@@ -99,7 +121,7 @@ BAR = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
 
 def sheet(
-    found: Archive,
+    archive: Archive,
     plan: Layout,
     motions: Sequence[Motion],
     *,
@@ -117,7 +139,7 @@ def sheet(
     figure = blank(width, side * plan.rows + 14)
     panel = figure.add_subplot()
     panel.set(xlim=(0, plan.columns), ylim=(0, plan.rows), aspect="equal")
-    fitness = found.fitness[[region.elite for region in plan.regions]]
+    fitness = archive.fitness[[region.elite for region in plan.regions]]
     colouring = shades(fitness, colours)
     extents = [np.ptp(_shown(one, moments).reshape(-1, 2), axis=0).max() for one in motions]
     scale = FILLED / (float(max(extents)) or 1.0)
@@ -133,7 +155,7 @@ def sheet(
             panel.text(right, top, WORDS[motion.trusted], **look)
     _dress(panel, plan)
     _bar(panel, plan, scale, side)
-    colour_bar(panel, colouring, fitness_label(found), pad=0.01, aspect=32)
+    colour_bar(panel, colouring, fitness_label(archive), pad=0.01, aspect=32)
     return figure
 
 
@@ -185,7 +207,7 @@ def _dress(panel: Any, plan: Layout) -> None:
         values, texts = _ticks(axis, ends)
         share = (axis.places(values) - ends[0]) / (ends[1] - ends[0])
         getattr(panel, f"set_{which}ticks")(share * count, texts)
-        getattr(panel, f"set_{which}label")(axis.label)
+        getattr(panel, f"set_{which}label")(axis.label, parse_math=False)
 
 
 def _ticks(axis: Axis, ends: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -208,3 +230,29 @@ def _bar(panel: Any, plan: Layout, scale: float, side: float) -> None:
     panel.plot([start, end], [y, y], color=INK, lw=1.2, clip_on=False, solid_capstyle="butt")
     text = f"{length} cell" + "s" * (length > 1)
     panel.text(start - 0.05, y, text, ha="right", va="center", fontsize=6)
+
+
+def motions(
+    data: bytes,
+    cells: Sequence[int],
+    trusted: Mapping[str, bool] | None = None,
+    tell: Callable[[int], None] = lambda done: None,
+) -> list[Motion]:
+    """Simulate the elites in some cells; `tell` is called with the number done.
+
+    `trusted` holds the verdicts of audits by creature.
+    """
+    # They load JAX, which the other figures do without (test_a_map_is_drawn_without_jax).
+    from ...build import build
+    from ...experiments.evolution import Evolution
+    from ..replay import record
+
+    experiment, found = build(read(data).spec), []
+    assert isinstance(experiment, Evolution)
+    state = experiment.restore(data, other_device=True)
+    for cell in cells:
+        replay = read_replay(record(experiment.creature(state, int(cell))))
+        verdict = (trusted or {}).get(replay.header["creature"])
+        found.append(Motion(replay.positions, replay.edges, verdict))
+        tell(len(found))
+    return found

@@ -14,19 +14,19 @@ from .style import GREY, INK, PALE, blank, palette
 
 COLUMNS = 2
 GAP = 0.12
-"""Between poses, in body lengths."""
+"""Gap between poses, in body lengths."""
 
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """A stroke of an elite; places are in body lengths, the way of the centre is upwards."""
+    """A stroke of an elite; places are in body lengths, the centre moves upwards."""
 
     fitness: float
     poses: np.ndarray
     """(frame, node, 2), about the mean of the nodes in each frame."""
     edges: np.ndarray
     advance: float
-    """Way of the centre in the stroke, in body lengths."""
+    """Path of the centre in the stroke, in body lengths."""
 
 
 def exemplars(files: Sequence[bytes], most: int) -> list[Strip]:
@@ -36,6 +36,7 @@ def exemplars(files: Sequence[bytes], most: int) -> list[Strip]:
         tree, attributes = load(data)
         fitness += tree["archive"]["fitness"].tolist()
         recorded += streams(tree, attributes)
+    # Stable: equal elites stand in the order of files and cells, on every machine.
     order = np.argsort(-np.array(fitness), kind="stable")
     kinds = of_each_kind([recorded[i] for i in order], most)
     return [strip(fitness[order[i]], recorded[order[i]]) for i in kinds]

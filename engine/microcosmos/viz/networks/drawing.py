@@ -4,8 +4,8 @@ import json
 from html import escape
 from itertools import pairwise
 
+from ...networks.network import Link, Network
 from .layout import Layout, layout
-from .network import Link, Network
 
 ACTIVATION = {
     "identity": "#dfe3e8",
@@ -216,4 +216,5 @@ def dot(network: Network) -> str:
 
 
 def _quoted(words: str) -> str:
+    # A string of Graphviz' language escapes quotes as JSON does.
     return json.dumps(words, ensure_ascii=False)

@@ -4,11 +4,12 @@ Columns, places held for long connections and ordering by means of neighbours fo
 Sugiyama, Tagawa and Toda, IEEE Trans. Syst. Man Cybern. 11, 109 (1981).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
-from .graph import Pairs, depths
+from ...networks.network import Pairs, depths
 
 Item = int | tuple[int, int, int]
 """A node's key, or the place in a column that a long connection passes through."""
@@ -85,6 +86,7 @@ def _ordered(columns: list[list[Item]], near: dict[Item, list[Item]]) -> dict[It
         height |= _apart(items, [0.0] * len(items))
     for sweep in range(SWEEPS):
         forward = sweep % 2 == 0
+        # Alternate directions: each item moves towards sources, then towards targets.
         for number in range(len(columns)) if forward else reversed(range(len(columns))):
             items = columns[number]
             around = {item: near.get(item, [item]) for item in items}
@@ -118,3 +120,51 @@ def _apart(items: list[Item], targets: list[float]) -> dict[Item, float]:
 
 def _size(item: Item) -> float:
     return PASSAGE if isinstance(item, tuple) else ROW
+
+
+@dataclass(frozen=True)
+class Point:
+    """A place: x in columns, y in rows."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class NetworkPositions:
+    """Points from (0, 0) to (width, height)."""
+
+    width: float
+    height: float
+    nodes: dict[str, Point]
+    """Positions of nodes, by number."""
+    passages: dict[str, list[Point]]
+    """Points that a connection passes between distant columns, by "source-target"."""
+
+
+def positions(identity: Mapping[str, Any]) -> NetworkPositions:
+    """Place the nodes of a creature's network; disabled connections count.
+
+    Raises `ValueError` if the genes are no network.
+    """
+    genome = identity["genome"]
+    if "nodes" not in genome:
+        raise ValueError(f"`genome.encoding` must hold a network, got {genome['encoding']!r}")
+    keys, links = genome["nodes"]["id"], genome["connections"]
+    pairs = list(zip(links["source"], links["target"], strict=True))
+    first, fixed = len(genome["inputs"]), len(genome["inputs"]) + len(genome["outputs"])
+    placed = layout(keys, first, keys[first:fixed], pairs)
+    points = [*placed.place.values(), *(point for way in placed.ways.values() for point in way)]
+    columns, rows = zip(*points, strict=True)
+
+    def scaled(point: tuple[float, float]) -> Point:
+        return Point(point[0] / COLUMN, round((point[1] - min(rows)) / ROW, 3))
+
+    passing = {f"{a}-{b}": way[1:-1] for (a, b), way in placed.ways.items() if way[2:]}
+    end = scaled((max(columns), max(rows)))
+    return NetworkPositions(
+        width=end.x,
+        height=end.y,
+        nodes={str(key): scaled(point) for key, point in placed.place.items()},
+        passages={ends: [scaled(point) for point in way] for ends, way in passing.items()},
+    )

@@ -1,4 +1,4 @@
-"""The body of a world: how it and the fluid move each other, see `stepping`.
+"""The body of a world and its exchange with the fluid, in the order of `stepping`.
 
 Nodes are vectors; sums over all pairs of nodes are products of the weights of `coupling` along
 both axes, which stand in tables.
@@ -33,7 +33,7 @@ def _bases(plan: Plan, position: Pair) -> tuple[Pair, Pair]:
     return tuple(inside), tuple(bases)
 
 
-def interpolate(plan: Plan, f: Ref, window: Ref, odd, position: Pair, there) -> Pair:
+def interpolate(plan: Plan, f: Ref, window: Ref, odd, position: Pair, mask) -> Pair:
     """Return the velocity of the fluid at the nodes.
 
     `window` gets the weights over the density.
@@ -49,12 +49,12 @@ def interpolate(plan: Plan, f: Ref, window: Ref, odd, position: Pair, there) -> 
         )
         places = addresses(plan, odd, *_line(plan, bases, line))
         planes = tuple(triton.load(f.at[place]) for place in places)
-        weight = (there * along_x)[:, None] * along_y / fluid.density(planes)
+        weight = (mask * along_x)[:, None] * along_y / fluid.density(planes)
         triton.store(window.at[node, ROW * line + lane], weight)
         x, y = fluid.momentum(planes)
         return velocity[0] + jnp.sum(weight * x, 1), velocity[1] + jnp.sum(weight * y, 1)
 
-    return repeat(plan.delta.points, read, (jnp.zeros_like(there), jnp.zeros_like(there)))
+    return repeat(plan.delta.points, read, (jnp.zeros_like(mask), jnp.zeros_like(mask)))
 
 
 def _line(plan: Plan, bases: Pair, line) -> Pair:
@@ -81,16 +81,19 @@ def clear(plan: Plan, force: Ref, position: Pair) -> None:
     repeat(plan.delta.points, write, 0)
 
 
-def tabulate(plan: Plan, tables: Ref, position: Pair, there) -> None:
-    """Write, for each axis and line of a window, the weights there of all nodes."""
+def tabulate(plan: Plan, tables: Ref, position: Pair, mask) -> None:
+    """Write, for each axis and line of the windows, the weights of all nodes in that line.
+
+    `tables` is (axis, line, window, node): the weight of a node in the line of a node's window.
+    """
     inside, bases = _bases(plan, position)
 
     def write(axis: int, line, carry):
         cells = plan.size[axis]
-        cell = wrapped(bases[axis] + line.astype(there.dtype), cells)
+        cell = wrapped(bases[axis] + line.astype(mask.dtype), cells)
         away = inside[axis][None, :] - cell[:, None]
         away = away - cells * jnp.floor(away / cells + 0.5)
-        tables[axis, line, :, :] = there[None, :] * plan.delta.weight(away)
+        tables[axis, line, :, :] = mask[None, :] * plan.delta.weight(away)
         return carry
 
     for axis in range(2):
@@ -98,7 +101,7 @@ def tabulate(plan: Plan, tables: Ref, position: Pair, there) -> None:
 
 
 def forced(
-    plan: Plan, window: Ref, tables: Ref, position: Pair, there, velocity, target: Pair, limit
+    plan: Plan, window: Ref, tables: Ref, position: Pair, mask, velocity, target: Pair, limit
 ):
     """Return the force on the fluid, the target less its rigid part, and the limiting factor.
 
@@ -111,10 +114,12 @@ def forced(
         weight = triton.load(window.at[node, ROW * x + y])
         return matrix + weight[:, None] * (tables[0, x, :, :] * tables[1, y, :, :])
 
-    nothing = jnp.zeros((plan.nodes, plan.nodes), there.dtype)
+    # Two nodes share cells where their windows do: the sum over the cells of one window gives a
+    # row, without a plane of forces between iterations.
+    nothing = jnp.zeros((plan.nodes, plan.nodes), mask.dtype)
     matrix = repeat(plan.delta.points**2, add, nothing)
     coverage = jnp.sum(matrix, 1)
-    beta = jnp.where(there > 0, 1.0 / jnp.where(there > 0, coverage, 1.0), 0.0)
+    beta = jnp.where(mask > 0, 1.0 / jnp.where(mask > 0, coverage, 1.0), 0.0)
     rigid = _rigid(plan, beta, position)
     q, reached = (jnp.zeros_like(beta),) * 2, (jnp.zeros_like(beta),) * 2
     for number, length in enumerate(plan.lengths):
@@ -132,7 +137,7 @@ def forced(
 
 
 def _rigid(plan: Plan, beta, position: Pair) -> Callable[[Pair], Pair]:
-    """Return what finds the rigid part of errors, see `coupling.torque_free`."""
+    """Return the function that finds the rigid part of errors, see `coupling.torque_free`."""
     total = jnp.sum(beta)
     x, y = (one - jnp.sum(beta * one) / total for one in position)
     inertia = jnp.sum(beta * (x * x + y * y))
@@ -170,12 +175,12 @@ def spread(plan: Plan, force: Ref, tables: Ref, position: Pair, forcing: Pair) -
     repeat(plan.delta.points**2, write, 0)
 
 
-def fitted(shape: Pair, position: Pair, there, count) -> Pair:
+def fitted(shape: Pair, position: Pair, mask, count) -> Pair:
     """Return a rest shape about its middle, moved and turned to be nearest to positions."""
-    centre = tuple(jnp.sum(there * one) / count for one in position)
+    centre = tuple(jnp.sum(mask * one) / count for one in position)
     arm, (x, y) = difference(position, centre), shape
-    cosine = jnp.sum(there * (x * arm[0] + y * arm[1]))
-    sine = jnp.sum(there * (x * arm[1] - y * arm[0]))
+    cosine = jnp.sum(mask * (x * arm[0] + y * arm[1]))
+    sine = jnp.sum(mask * (x * arm[1] - y * arm[0]))
     size = jnp.sqrt(cosine * cosine + sine * sine + 1e-24)
     c, s = cosine / size, sine / size
     return centre[0] + (c * x - s * y), centre[1] + (s * x + c * y)

@@ -49,8 +49,9 @@ def rollout(plan: Plan, operands: Sequence[Array]) -> list[Array]:
         interpret=plan.interpreted,
         name="microcosmos_rollout",
     )
-    f, _, _, _, *found = call(*operands)
-    return [restored(plan, f), *found]
+    # Force, windows and tables are results only to have memory on the device.
+    f, _, _, _, *observed = call(*operands)
+    return [restored(plan, f), *observed]
 
 
 def _rollout(
@@ -58,31 +59,31 @@ def _rollout(
 ):
     """Carry one world through all steps; arguments after the plan are memory."""
     rates = fluid.Rates(numbers[0], numbers[1])
-    there = present[:]
-    count = jnp.sum(there)
+    mask = present[:]
+    count = jnp.sum(mask)
     prepare(plan, start, f, force)
 
     def step(time, position: Pair) -> Pair:
         odd = divided(time, 2)[1]
-        velocity = interpolate(plan, f, window, odd, position, there)
-        tabulate(plan, tables, position, there)
-        wait(plan)
+        velocity = interpolate(plan, f, window, odd, position, mask)
+        tabulate(plan, tables, position, mask)
+        wait(plan)  # `forced` reads windows and tables that other threads write.
         shape = shapes[time, 0, :], shapes[time, 1, :]
-        matched = fitted(shape, added(position, velocity), there, count)
+        matched = fitted(shape, added(position, velocity), mask, count)
         wanted, speed, held = limited(difference(matched, position), numbers[2])
         forcing, target, scale = forced(
-            plan, window, tables, position, there, velocity, wanted, numbers[3]
+            plan, window, tables, position, mask, velocity, wanted, numbers[3]
         )
         spread(plan, force, tables, position, forcing)
-        wait(plan)
+        wait(plan)  # The fluid reads the force that all nodes have spread.
         fastest = flow(plan, f, force, odd, rates)
-        wait(plan)
+        wait(plan)  # No force may be cleared before its cell has collided.
         clear(plan, force, position)
         wait(plan)
-        position = added(position, (there * target[0], there * target[1]))
-        held = jnp.where(scale < 1, there, held)
+        position = added(position, (mask * target[0], mask * target[1]))
+        held = jnp.where(scale < 1, mask, held)
         power = forcing[0] * target[0] + forcing[1] * target[1]
-        means = jnp.sum(there * speed) / count, jnp.sum(there * held) / count
+        means = jnp.sum(mask * speed) / count, jnp.sum(mask * held) / count
         pushed = jnp.sum(power), jnp.sum(forcing[0]), jnp.sum(forcing[1])
         _record(out, time, position, matched, (fastest, *means, *pushed))
         return position

@@ -39,7 +39,7 @@ def prepare(plan: Plan, start: Ref, f: Ref, force: Ref) -> None:
 
 def wait(plan: Plan) -> None:
     """Wait until all threads of the program have written."""
-    if not plan.interpreted:
+    if not plan.interpreted:  # The interpreter works in order and has no barriers.
         triton.debug_barrier()
 
 
@@ -70,16 +70,18 @@ def flow(plan: Plan, f: Ref, force: Ref, odd, rates: fluid.Rates):
 
 
 def addresses(plan: Plan, odd, x, y) -> list:
-    """Return where the populations of cells stand, by direction, before an `odd` (1) or even
-    (0) step."""
-    found = []
+    """Return the places of the populations of cells, by direction, before a step.
+
+    `odd` is 1 before an odd step and 0 before an even one.
+    """
+    places = []
     for i, (dx, dy) in enumerate(fluid.DIRECTIONS):
         plane = i + odd * (OPPOSITE[i] - i)
         row = wrapped(x - odd * dx, plan.size[0])
-        found.append(
+        places.append(
             plane * plan.cells + row * plan.size[1] + wrapped(y - odd * dy, plan.size[1])
         )
-    return found
+    return places
 
 
 def restored(plan: Plan, f: jax.Array) -> jax.Array:
@@ -95,7 +97,7 @@ def restored(plan: Plan, f: jax.Array) -> jax.Array:
 
 
 def _cells(plan: Plan, number):
-    """Return the numbers of the cells of a tile, and which of them there are; None: all."""
+    """Return the numbers of a tile's cells, and the mask of those in the box; None: all."""
     at = number * TILE + jax.lax.broadcasted_iota(jnp.int32, (1, TILE), 1)
     return at, at < plan.cells if plan.cells % TILE else None
 

@@ -1,4 +1,4 @@
-"""What is fixed when a rollout is compiled, and helpers of all its parts."""
+"""The parameters that are fixed when a rollout is compiled, and helpers of all its parts."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ Ref = Any
 
 @dataclass(frozen=True)
 class Plan:
-    """What is fixed when a program is compiled."""
+    """Parameters that are fixed when a program is compiled."""
 
     size: tuple[int, int]
     steps: int
@@ -27,7 +27,7 @@ class Plan:
     lengths: tuple[float, ...]
     """Step lengths of the forcing iterations."""
     turns: bool
-    """Whether the projection removes the rotation too."""
+    """True if the projection removes the rotation too."""
     force_factor: float
     interpreted: bool
 
@@ -37,9 +37,9 @@ class Plan:
 
 
 def repeat(times: int, work: Callable, carry: Any) -> Any:
-    """Return what `work` makes of `carry` after all times.
+    """Call `work(number, carry)` for numbers from 0 below `times`; return the last carry.
 
-    Written out, a loop needs more registers, so that fewer worlds are simulated at once.
+    An unrolled loop needs more registers, so that fewer worlds are simulated at once.
     """
     return jax.lax.fori_loop(0, times, work, carry)
 

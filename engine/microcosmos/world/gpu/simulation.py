@@ -1,4 +1,4 @@
-"""Rollouts in the kernel for GPUs: which worlds it covers, its operands, and its measures."""
+"""Rollouts in the kernel for GPUs: the worlds that it covers, its operands and its measures."""
 
 from dataclasses import replace
 
@@ -7,13 +7,13 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ... import coupling, device, filaments, fluid
-from ..measuring import curvature
-from ..model import Measures, State, World
-from ..present import edges_there, grown_nodes, mean
+from ..model import Measures, State, World, grown_nodes, mean, present_edges
+from ..stepping import curvature
 from .plan import Plan
 
 MOST_NODES = 64
 """Nodes of a world; time and memory grow with their square."""
+PROJECTIONS = (coupling.force_free, coupling.torque_free)
 
 
 def chosen(world: World, state: State) -> bool:
@@ -22,7 +22,7 @@ def chosen(world: World, state: State) -> bool:
 
 
 def uncovered(world: World, state: State) -> str | None:
-    """Return what of a world the kernel lacks; None if it can simulate the world."""
+    """Return the feature that the kernel lacks for a world; None if it simulates the world."""
     layout, around = world.layout, world.surroundings
     lacking = {
         "no fluid": not world.form.fluid,
@@ -31,7 +31,7 @@ def uncovered(world: World, state: State) -> str | None:
         "several pieces": layout is not None and layout.pieces.count > 1,
         "soft joints": layout is not None and layout.bend is not None,
         "layers": world.form.layers > 1,
-        "forcing without projection": world.form.projection is coupling.unprojected,
+        "forcing of another projection": world.form.projection not in PROJECTIONS,
         "repulsion": world.steric is not None or world.barrier is not None,
         "energy": state.energy is not None,
         "surroundings": any(one is not None for one in vars(around).values()),
@@ -52,9 +52,10 @@ def rollout(
     from . import kernel  # Pallas takes half a second to import.
 
     nodes, plan = len(state.positions), plan_of(world, state, rest, interpreted)
-    populations, *found = kernel.rollout(plan, operands_of(plan, world, state, rest))
-    path, matched = (jnp.swapaxes(one, 1, 2)[:, :nodes] for one in found[:2])
-    numbers = dict(zip(kernel.OBSERVED, found[2].T, strict=True))
+    populations, *motion = kernel.rollout(plan, operands_of(plan, world, state, rest))
+    path, matched = (jnp.swapaxes(one, 1, 2)[:, :nodes] for one in motion[:2])
+    numbers = dict(zip(kernel.OBSERVED, motion[2].T, strict=True))
+    # Angles are those of the positions before the limit, as `stepping` leaves them.
     angles = _followed(state.angles, matched, world.rods)
     end = replace(state, populations=tuple(populations), positions=path[-1], angles=angles[-1])
     force = jnp.stack([numbers.pop("force_x"), numbers.pop("force_y")], 1)[:, None]
@@ -64,7 +65,7 @@ def rollout(
             centre=mean(positions, world.present),
             positions=positions,
             rest=rest,
-            heading=mean(angles, edges_there(world)),
+            heading=mean(angles, present_edges(world)),
             curvature=curvature(world, positions, angles),
             force=force,
             **numbers,
@@ -74,12 +75,14 @@ def rollout(
 
 
 def plan_of(world: World, state: State, rest: filaments.Rest, interpreted: bool) -> Plan:
-    """Return what of a rollout is fixed when its program is compiled."""
+    """Return the parts of a rollout that are fixed when its program is compiled."""
     form, nodes = world.form, len(state.positions)
     return Plan(
         size=world.size,
         steps=len(rest.angle),
-        nodes=max(16, 1 << (nodes - 1).bit_length()),
+        nodes=max(
+            16, 1 << (nodes - 1).bit_length()
+        ),  # Sizes of Triton's arrays are powers of two.
         delta=form.kernel,
         lengths=tuple(map(float, coupling.step_lengths(form.forcing_iterations))),
         turns=form.projection is coupling.torque_free,
@@ -89,10 +92,11 @@ def plan_of(world: World, state: State, rest: filaments.Rest, interpreted: bool)
 
 
 def operands_of(plan: Plan, world: World, state: State, rest: filaments.Rest) -> list[Array]:
-    """Return the operands of the kernel; nodes that fill up are absent, where the first is."""
+    """Return the operands of the kernel. Nodes that fill up a power of two are absent."""
     assert world.layout is not None
     dtype, nodes = state.positions.dtype, len(state.positions)
     filled = plan.nodes - nodes
+    # They stand where the last node does: their windows then lie within the box.
     positions = jnp.pad(state.positions.T, ((0, 0), (0, filled)), mode="edge")
     shapes = filaments.rest_positions(rest, world.layout)
     middles = jax.vmap(lambda one: mean(one, world.present))(shapes)

@@ -1,10 +1,10 @@
-"""Ten thousand random plans and their bodies, or some hundreds of them."""
+"""Thousands of random plans and their bodies, or some hundreds of them."""
 
 import body_plans
 import jax
 import pytest
 
-MANY = 10_000
+MANY = 3_000
 
 
 @pytest.fixture(

@@ -16,11 +16,11 @@ def test_bodies_stay_within_their_capacity(population):
     assert nodes.max() < CAPACITY.nodes  # The last row stays empty.
     assert np.array_equal(grown.present, np.arange(CAPACITY.nodes)[None] < nodes[:, None])
     rings = (grown.ring_first >= 0).sum(1)
-    assert np.array_equal(bones.there.sum(1), nodes - 1 + rings)
+    assert np.array_equal(bones.edge_present.sum(1), nodes - 1 + rings)
     assert np.array_equal(bones.bends.sum(1), nodes - 2 + 2 * rings)
     longest = (grown.distance * _pairs(grown)).max((1, 2))
     assert longest.max() * CAPACITY.spacing <= CAPACITY.length
-    ends = np.where(bones.there[:, :, None], bones.edges, CAPACITY.nodes - 1)
+    ends = np.where(bones.edge_present[:, :, None], bones.edges, CAPACITY.nodes - 1)
     degree = np.stack([np.bincount(one.ravel(), minlength=CAPACITY.nodes) for one in ends])
     degree[:, -1] = 0
     assert np.array_equal(degree, np.where(grown.present, grown.degree, 0))
@@ -44,7 +44,7 @@ def test_distances_are_the_shortest_ways_along_the_edges(population):
         node = grown.present[index]
         way = np.full((len(node), len(node)), np.inf)
         np.fill_diagonal(way, 0)
-        first, second = bones.edges[index][bones.there[index]].T
+        first, second = bones.edges[index][bones.edge_present[index]].T
         way[first, second] = way[second, first] = 1
         for middle in np.flatnonzero(node):
             way = np.minimum(way, way[:, middle, None] + way[None, middle])
@@ -71,7 +71,7 @@ def test_the_root_always_has_room(root, nodes, spacing):
     grown, bones = body_plans.in_numpy(plan_of(root, rows=1), capacity)
     assert grown.present.sum() == nodes
     assert grown.ungrown == 0
-    v = np.diff(grown.positions[bones.edges[bones.there]], axis=1)
+    v = np.diff(grown.positions[bones.edges[bones.edge_present]], axis=1)
     np.testing.assert_allclose(np.linalg.norm(v, axis=-1), spacing, rtol=1e-5)
 
 

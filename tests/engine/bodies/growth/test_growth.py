@@ -37,15 +37,6 @@ def test_a_root_grows_along_x_or_bends(nodes_of):
     close(bent, [[0, 0], [1, 0], [1.5, np.sqrt(0.75)], [1, np.sqrt(3)]])
 
 
-def test_a_ring_is_a_regular_polygon(nodes_of):
-    corners = nodes_of({"nodes": 11, "closed": True})
-    middle = corners.mean(0)
-    radius = 0.5 / np.sin(np.pi / 12)
-    close(np.linalg.norm(corners - middle, axis=1), np.full(12, radius))
-    close(middle, [radius, 0])
-    close(np.linalg.norm(corners[-1] - corners[0]), 1)
-
-
 def test_a_limb_stands_at_its_place(nodes_of):
     limb = {"nodes": 3, "angle": RIGHT}
     for place, x in ((0.0, 0), (0.25, 1), (0.45, 2), (1.0, 4)):
@@ -90,12 +81,6 @@ def test_copies_at_the_base_of_the_root_make_a_star(nodes_of, copies):
     angle = 2 * np.pi * np.arange(copies + 1) / (copies + 1)
     way = np.stack([np.cos(angle), np.sin(angle)], 1)
     close(arms, np.arange(1, 5)[None, :, None] * way[:, None])
-
-
-def test_a_ring_at_a_limb_stands_straight_ahead(nodes_of):
-    ring = nodes_of(ROOT, {"nodes": 9, "place": 1.0, "closed": True})[5:]
-    middle = np.concatenate([[[4, 0]], ring]).mean(0)
-    close(middle, [4 + 0.5 / np.sin(np.pi / 10), 0])
 
 
 def test_copies_of_a_parent_have_each_their_limbs(nodes_of):

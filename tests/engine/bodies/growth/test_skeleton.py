@@ -19,14 +19,14 @@ def test_the_kinematics_are_those_of_least_squares(population, part):
     for index in chosen:
         body, bone = (body_plans.member(one, index) for one in (grown, bones))
         layout = bodies.layout(body_plans.graph(body, bone))
-        turned = bone.turned[bone.there][:, bone.bends]
+        turned = bone.turned[bone.edge_present][:, bone.bends]
         np.testing.assert_allclose(turned, layout.turned, atol=1e-6)
-        placed = bone.placed[body.present][:, bone.there]
+        placed = bone.placed[body.present][:, bone.edge_present]
         np.testing.assert_allclose(placed, layout.placed, atol=1e-6)
-        assert not bone.turned[~bone.there].any()
+        assert not bone.turned[~bone.edge_present].any()
         assert not bone.turned[:, ~bone.bends].any()
         assert not bone.placed[~body.present].any()
-        assert not bone.placed[:, ~bone.there].any()
+        assert not bone.placed[:, ~bone.edge_present].any()
 
 
 def test_lengths_and_angles_are_those_of_the_positions(population):
@@ -34,7 +34,7 @@ def test_lengths_and_angles_are_those_of_the_positions(population):
     index = np.arange(len(grown.present))[:, None]
     ends = grown.positions.astype(float)[index[:, None], bones.edges]
     v = ends[:, :, 1] - ends[:, :, 0]
-    there, bends = bones.there, bones.bends
+    there, bends = bones.edge_present, bones.bends
     np.testing.assert_allclose(np.linalg.norm(v, axis=-1)[there], CAPACITY.spacing, atol=2e-5)
     angle = np.arctan2(v[..., 1], v[..., 0])
     assert np.abs(_wrapped(angle - bones.angle))[there].max() < 5e-5
@@ -44,7 +44,7 @@ def test_lengths_and_angles_are_those_of_the_positions(population):
 
 def test_joints_are_of_edges_that_share_a_node_and_have_their_far_node_as_driver(population):
     _, _, bones, *_ = population
-    index = np.arange(len(bones.there))[:, None]
+    index = np.arange(len(bones.edge_present))[:, None]
     first, second = (bones.edges[index, bones.joints[..., end]] for end in (0, 1))
     shared = (first[..., :, None] == second[..., None, :]).any((-1, -2))
     assert shared[bones.bends].all()

@@ -99,66 +99,6 @@ def test_the_jellyfish_bends_and_stretches_alike_everywhere():
     np.testing.assert_allclose(circle, 1, rtol=1e-10)
 
 
-@pytest.fixture
-def hairs():
-    """Cilia, and a function that gives their hairs' nodes at a time, on a rigid body.
-
-    The result is (hair, node) as complex numbers, the root first.
-    """
-    swimmer = swimmers.cilia(body_nodes=40, hairs=6, hair_nodes=8)
-    body = swimmer.body
-
-    def at(time):
-        angle = body.rest_angle + swimmer.gait(np.array([time]))[0][0]
-        v = (body.positions[body.edges[:, 1]] - body.positions[body.edges[:, 0]]) @ [1, 1j]
-        heading = np.angle(v)
-        for joint in np.argsort(body.joints.max(1), kind="stable"):
-            first, second = body.joints[joint]
-            if second >= 40 and first < second:
-                heading[second] = heading[first] + angle[joint]
-            elif first >= 40:
-                heading[first] = heading[second] - angle[joint]
-        steps = np.exp(1j * heading[40:]).reshape(6, 8)
-        roots = body.positions[body.edges[40::8, 0]] @ [1, 1j]
-        return roots[:, None] + np.concatenate([np.zeros((6, 1)), np.cumsum(steps, 1)], 1)
-
-    return swimmer, at
-
-
-def test_cilia_turn_at_their_root_alike_to_both_sides_of_the_body(hairs):
-    swimmer, _ = hairs
-    body = swimmer.body
-    angle, length = swimmer.gait(TIMES)
-    assert not length.any()
-    held = np.all(body.joints < 40, 1)
-    assert not angle[:, held].any()
-    root = ~held & np.any(body.joints < 40, 1)
-    assert root.sum() == 12
-    np.testing.assert_allclose(np.abs(angle[:, root]).max(0), 1.0)
-    np.testing.assert_allclose(np.ptp(np.abs(angle[:, root]), axis=1), 0, atol=1e-12)
-
-
-def test_hairs_sweep_backward_straight_and_come_back_faster_and_curled(hairs):
-    _, at = hairs
-    for time in TIMES[::20]:  # In mirror image on both flanks.
-        upper, lower = at(time)[:3], at(time)[3:]
-        assert np.all(upper[:, 0].imag > 0)
-        np.testing.assert_allclose(np.conj(lower[::-1]), upper, atol=1e-9)
-    upright = np.array([at(t)[1] for t in TIMES])  # The upper hair in the middle.
-    tips = upright[:, -1] - upright[:, 0]
-    lean = np.angle(upright[:, 1] - upright[:, 0])
-    np.testing.assert_allclose(np.mean(np.diff(lean) > 0), 0.75, atol=0.01)
-    np.testing.assert_allclose((lean.min(), lean.max()), (np.pi / 2 - 1, np.pi / 2 + 1))
-    power = TIMES <= 0.75
-    np.testing.assert_allclose(np.abs(tips[power]), 8, rtol=1e-9)
-    assert np.abs(tips[~power]).min() < 0.8 * 8
-    hair = at(0.875)[1]
-    heading = np.unwrap(np.angle(np.diff(hair)))
-    np.testing.assert_allclose(heading[0], np.pi / 2, atol=1e-9)
-    # On its way back, clockwise, the rest of the hair is anticlockwise of its root.
-    np.testing.assert_allclose(np.diff(heading), 0.35, rtol=1e-9)
-
-
 @pytest.mark.parametrize("count", [0, 1, 5])
 def test_cilia_need_as_many_hairs_on_both_flanks(count):
     with pytest.raises(ValueError, match="`hairs` must be an even number"):

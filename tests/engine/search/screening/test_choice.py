@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -35,13 +34,6 @@ def test_choices_spread_over_cells_before_they_repeat_one():
     np.testing.assert_allclose(height, [1.0, 0.5, 0.4, 0.0], atol=1e-6)
 
 
-def test_only_able_candidates_are_chosen_and_each_once():
-    found = predicted(np.linspace(0, 1, 8), np.zeros(8, int))
-    able = jnp.arange(8) % 2 == 0
-    chosen, _ = best(found, jnp.zeros(1), able, 4, 4)
-    assert sorted(chosen.tolist()) == [0, 2, 4, 6]
-
-
 @pytest.mark.parametrize(("fitness", "empty"), [([0.5, 0.2], 0.0), ([-3.0, -1.0], -3.0)])
 def test_empty_cells_are_worth_filling_whatever_the_sign_of_fitness(fitness, empty):
     elites = search.no_elites(4, 1, Vector(jnp.zeros(1)))
@@ -52,14 +44,3 @@ def test_empty_cells_are_worth_filling_whatever_the_sign_of_fitness(fitness, emp
         fitness=elites.fitness.at[place].set(jnp.array(fitness)),
     )
     np.testing.assert_allclose(heights(elites), [empty, *fitness, empty])
-
-
-def test_the_program_chooses_as_the_function_does():
-    rng = np.random.default_rng(2)
-    found = predicted(rng.normal(size=200), rng.integers(0, 30, 200))
-    given = found, jnp.zeros(30), jnp.ones(200, bool)
-    plain, compiled = (
-        best(*given, 40, 40)[0],
-        jax.jit(best, static_argnums=4)(*given, 40, 50)[0],
-    )
-    np.testing.assert_array_equal(np.pad(plain, (0, 10)), compiled)

@@ -63,17 +63,3 @@ def test_no_force_and_no_torque_act_on_the_body(chain_stroke, edges):
     assert np.abs(torque.sum(1)).max() < 1e-3 * scale.max()
     power = np.sum(force * v, (1, 2))
     np.testing.assert_allclose(moved.power, power, rtol=1e-3)
-
-
-def test_speed_follows_the_turn_and_the_scale_of_the_body(chain_stroke, edges):
-    wave = travelling_wave(0.02, 2)
-    c, s = np.cos(0.7), np.sin(0.7)
-    turned = 3.0 * wave @ np.array([[c, s], [-s, c]])
-    one, other = (
-        swim(chain_stroke(positions, took), edges(NODES), np.ones(NODES - 1))
-        for positions, took in ((wave, 10.0), (turned, 20.0))
-    )
-    distance = np.hypot(*np.asarray(one.displacement))
-    again = np.hypot(*np.asarray(other.displacement))
-    assert again == pytest.approx(3 * distance, rel=2e-2)
-    np.testing.assert_allclose(other.power, one.power * 3 * 1.5**2, rtol=2e-2)

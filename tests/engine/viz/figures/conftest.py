@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from microcosmos import spec
-from microcosmos.spec.measures import MEASURES
+from microcosmos.measures import RECORDED
 from microcosmos.viz.figures.reading import Archive
 
 DEVICE = "cpu, A Model avx2, microcosmos 0, jax 0, jaxlib 0"
@@ -39,15 +39,13 @@ def made():
             devices=(DEVICE,),
             measures={
                 n: np.array([e.get(n, 0.5) for e in elites])
-                for n in [*MEASURES, *(axis["name"] for axis in axes)]
+                for n in [*RECORDED, *(axis["name"] for axis in axes)]
             },
             cells=np.array([elite["cell"] for elite in elites]),
             fitness=np.array([elite["fitness"] for elite in elites], float),
-            generation=np.ones(len(elites), int),
             centroids=None if centroids is None else np.array(centroids, np.float32),
             curves=curves,
             lineage=lineage or {"parents": np.zeros((len(elites), 2, 32), np.uint8)},
-            operators=("random", "neat"),
         )
 
     return make

@@ -1,14 +1,12 @@
 """Figures of compared groups draw every run, and state seeds, tests and correction."""
 
-import warnings
-
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from microcosmos.statistics import RunRecord, across, compare, named
+from microcosmos.statistics import RunRecord, across, by_spec, compare, named
 from microcosmos.statistics.effects import Bootstrap
-from microcosmos.viz.figures import compared, compared_caption, saving, style
+from microcosmos.viz.figures import caption, compared, curves, style
 
 pytestmark = pytest.mark.long
 
@@ -71,48 +69,12 @@ def test_a_box_shows_every_run_and_the_median(found):
     assert max(points(coverage, "o")[0].get_ydata()) == 50
 
 
-def test_a_figure_with_its_caption_keeps_its_panels(found, tmp_path):
-    figure = compared.boxes(found)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        saving.publish(figure, tmp_path / "a.png", compared_caption.of_boxes(found), under=True)
-    assert all(panel.get_position().height > 0.2 for panel in figure.axes)
-
-
 def test_runs_that_do_not_arrive_stand_at_the_top(groups):
     late = compare(groups, ["best>=9"], FEW)
     (panel,) = compared.boxes(late).axes
     counts = [len(line.get_ydata()) for line in points(panel, "^")]
     assert counts == [5, 4, 1]
-    assert "Triangles at the top are runs that do not" in compared_caption.of_boxes(late)
-
-
-def test_one_run_that_does_not_arrive_is_drawn_and_explained_in_every_figure(groups):
-    """The upper quartiles of the third group are finite."""
-    late = compare(groups[2:], ["best>=9"], FEW)
-    assert np.isfinite(late.results[0].summaries[0].high)
-    text = "Triangles at the top are runs that do not reach the value."
-    assert text in compared_caption.of_boxes(late)
-    late = compare(groups, ["best>=9"], FEW)
-    (panel,) = compared.parameter(late, "world.viscosity").axes
-    triangles = points(panel, "^")
-    counts = {line.get_xdata()[0]: len(line.get_ydata()) for line in triangles}
-    assert counts == {0.05: 5, 0.2: 4, 0.8: 1}
-    assert {y for line in triangles for y in line.get_ydata()} == {1.0}
-    assert text in compared_caption.of_parameter(late, "world.viscosity")
-    early = compare(groups, ["best"], FEW)
-    assert "Triangles" not in compared_caption.of_boxes(early)
-
-
-def test_runs_without_elites_stand_at_the_bottom(groups):
-    for run in groups[0].runs[:2]:
-        run.curves["coverage"][:] = 0
-    found = compare(groups, ["best"], FEW)
-    (panel,) = compared.boxes(found).axes
-    (line,) = points(panel, "v")
-    assert line.get_ydata().tolist() == [0.0, 0.0]
-    assert not points(panel, "^")
-    assert "Triangles at the bottom are runs without" in compared_caption.of_boxes(found)
+    assert "Triangles at the top are runs that do not" in caption.of_boxes(late)
 
 
 def test_a_parameter_is_drawn_by_medians_between_quartiles(found):
@@ -124,31 +86,42 @@ def test_a_parameter_is_drawn_by_medians_between_quartiles(found):
     assert best.get_xscale() == "log"
     assert best.get_xlabel() == "World viscosity"
     assert len(points(best, ".")) == 3
-    text = compared_caption.of_parameter(found, "world.viscosity")
+    text = caption.of_parameter(found, "world.viscosity")
     assert "Each has n = 5, seeds 0 to 4." in text
     assert "p after Holm’s correction for 6 tests" in text
     assert "Best fitness: viscosity 0.05 against viscosity 0.2, p = " in text
     assert "All else as in the first run: MAP-Elites (emitter neat), 2 generations" in text
 
 
-def test_other_fields_that_differ_are_lines_of_their_own(record):
-    groups = named(
-        {
-            f"{v} {width}": [
-                record(x + width, s, world={"viscosity": v, "width": width})
-                for s, x in enumerate(scores)
-            ]
-            for v, scores in SCORES.items()
-            for width in (96, 128)
-        }
-    )
-    figure = compared.parameter(compare(groups, ["best"], FEW), "world.viscosity")
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "world width 96",
-        "world width 128",
+def test_specs_that_differ_in_a_part_are_lines_of_their_own(record):
+    novelty = {"container": {"kind": "dominated-novelty"}}
+    specs = [(0.05, {}), (0.2, {}), (0.05, novelty)]
+    runs = [
+        record(1.0 + n, 0, world={"viscosity": v}, **more) for n, (v, more) in enumerate(specs)
     ]
-    assert len(points(figure.axes[0], "o")) == 1
+    lines = compared.series(compare(by_spec(runs), ["best"], FEW), "world.viscosity")
+    assert lines == {
+        "container kind none": [(0.05, 0), (0.2, 1)],
+        "container kind dominated-novelty": [(0.05, 2)],
+    }
+
+
+def test_names_of_groups_are_drawn_as_they_are(record):
+    names = ("_a", r"b$\frac$")
+    groups = named({name: [record(float(i), i)] for i, name in enumerate(names)})
+    figure = curves.curves(groups, shown=["best"])
+    style.encoded(figure, ".svg")
+    (legend,) = figure.legends
+    assert [one.get_text().strip("\u200b") for one in legend.get_texts()] == [
+        f"{name} (n = 1)" for name in names
+    ]
+    box = compared.boxes(compare(groups, ["best"], FEW))
+    style.below(box, caption.of_boxes(compare(groups, ["best"], FEW)))
+    assert rb"\frac" in style.encoded(box, ".svg")
+    with pytest.raises(
+        ValueError, match="need letters that the font DejaVu Sans has; got '游'"
+    ):
+        curves.curves(named({"游泳": groups[0].runs}), shown=["best"])
 
 
 def test_a_field_that_is_no_parameter_is_refused(found, record):
@@ -174,6 +147,6 @@ def test_profiles_are_drawn_with_bands(record):
     np.testing.assert_allclose(line.get_ydata(), found.groups[0].profile)
     assert to_hex(line.get_color()).upper() == style.COLOURS[0]
     assert len(panel.collections) == 1
-    text = compared_caption.of_profiles(found, runs[0])
+    text = caption.of_profiles(found, runs[0])
     assert "Over 3 tasks" in text
     assert "with 95 % bands" in text

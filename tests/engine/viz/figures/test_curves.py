@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from microcosmos.statistics import Group
 from microcosmos.viz.figures import caption, curves, style
-from microcosmos.viz.figures.groups import grouped
-from microcosmos.viz.figures.lineage import family, heights, lineage
-from microcosmos.viz.figures.sheet import Motion, layout, numerals, reading_order, sheet
+from microcosmos.viz.figures.lineage import family, lineage
+from microcosmos.viz.figures.maps import archive as archive_map
+from microcosmos.viz.figures.reading import grouped
+from microcosmos.viz.figures.sheet import Motion, layout, reading_order, sheet
 
 pytestmark = pytest.mark.long
 
@@ -57,6 +59,35 @@ def test_nothing_is_drawn_while_an_archive_is_empty(runs):
     assert panel.get_ylim()[0] > -10
 
 
+def test_corrected_curves_lead_through_the_generations_with_numbers(runs):
+    for seed, one in enumerate(runs[:3]):
+        one.curves["corrected_qd_score"] = np.array([np.nan, seed, 3.0 * seed])
+    panel = curves.curves(grouped(runs[:3]), shown=["corrected_qd_score"]).axes[0]
+    (median,) = lines(panel)
+    assert median.get_xydata().tolist() == [[32, 1], [48, 3]]
+    single = [line.get_xydata().tolist() for line in panel.get_lines() if line != median]
+    assert single == [[[32, s], [48, 3 * s]] for s in range(3)]
+    (band,) = panel.collections
+    assert np.isfinite(band.get_paths()[0].vertices).all()
+    # With one number a line has no length.
+    for one in runs[:3]:
+        one.curves["corrected_qd_score"][1] = np.nan
+    panel = curves.curves(grouped(runs[:3]), shown=["corrected_qd_score"]).axes[0]
+    assert {line.get_marker() for line in panel.get_lines()} == {"."}
+    runs[0].curves["corrected_qd_score"][2] = np.nan
+    with pytest.raises(ValueError, match="generation with `corrected_qd_score` of all runs"):
+        curves.curves(grouped(runs[:3]), shown=["corrected_qd_score"])
+
+
+def test_sums_of_negative_fitness_have_a_caution(runs):
+    said = "Some runs have negative fitness."
+    assert said not in caption.of_curves(grouped(runs), ["best", "qd_score"])
+    runs[5].curves["best"][:] = -1
+    assert said in caption.of_curves(grouped(runs), ["best", "qd_score"])
+    assert said in caption.of_curves(grouped(runs[5:]), ["qd_score"])
+    assert said not in caption.of_curves(grouped(runs), ["best", "coverage"])
+
+
 def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     figure = curves.curves(grouped(runs), shown=["best"], against="generations")
     (legend,) = figure.legends
@@ -68,7 +99,34 @@ def test_specs_are_told_apart_by_the_fields_in_which_they_differ(runs):
     text = caption.of_curves(grouped(runs), ["best", "hit_rate", "qd_score"])
     assert text.startswith("Best fitness, hit rate and QD score: median over seeds (thick)")
     assert "; medians and bands end with the shortest run. " in text
-    assert "world viscosity 0.5: seeds 7, 8" in text
+    assert "elites again" not in text
+    runs[0].curves["corrected_qd_score"] = np.ones(len(runs[0].curves["best"]))
+    again = "; evaluations count those of elites again. "
+    assert again in caption.of_curves(grouped(runs), ["best"])
+    assert again not in caption.of_curves(grouped(runs), ["best"], "generations")
+    assert "their specs differ, in this order, in world.viscosity (0.05, 0.5). " in text
+    assert "world viscosity 0.5 has n = 2, seeds 7, 8. All else as in the first run" in text
+
+
+def test_specs_with_equal_labels_are_numbered(made):
+    """Labels are cut after three fields."""
+    world = {"viscosity": 0.5, "width": 64, "height": 64}
+    others = [made(ELITES, world=world, task={"steps": steps}) for steps in (500, 600)]
+    runs = [made(ELITES), *others]
+    names = [group.name for group in grouped(runs)]
+    assert len(set(names)) == 3
+    assert all(name.endswith(f" … ({number})") for number, name in enumerate(names, 1))
+
+
+def test_the_caption_of_named_groups_names_the_fields_in_which_they_differ(runs):
+    groups = [Group("thin", tuple(runs[:5])), Group("thick", tuple(runs[5:]))]
+    text = caption.of_curves(groups, ["best"])
+    assert "Groups: thin, thick; their specs differ, in this order, in world.viscosity" in text
+
+
+def test_one_generation_is_not_several(made):
+    text = caption.of_curves(grouped([made(ELITES, best=(1,))]), ["best"])
+    assert "(emitter neat), 1 generation of 64 (16 evaluations, seed 0)" in text
 
 
 def test_a_run_that_is_given_twice_is_refused(runs):
@@ -86,13 +144,6 @@ def test_a_curve_that_is_not_there_is_refused_with_those_that_are(runs):
         curves.curves(grouped([extra, runs[1]]), shown=["speed"])
 
 
-def test_coverage_is_drawn_in_per_cent(runs):
-    panel = curves.curves(grouped(runs[:1]), shown=["coverage"]).axes[0]
-    (line,) = lines(panel)
-    np.testing.assert_allclose(line.get_ydata(), [10, 30, 50])
-    assert panel.get_ylabel() == "Coverage [%]"
-
-
 @pytest.fixture
 def found(made):
     """Three elites in the lower left, of which the second is fittest, and one far away."""
@@ -104,44 +155,20 @@ def found(made):
     return made(elites)
 
 
-def swimming(length, frames=9):
-    x = np.linspace(0, length, 5)
-    y = np.arange(frames)[:, None] * np.ones(5)
-    places = np.stack([np.broadcast_to(x, y.shape), y], -1).astype(np.float32)
-    return Motion(places, np.stack([np.arange(4), np.arange(1, 5)], 1))
-
-
 def test_the_fittest_of_each_region_is_shown_where_it_belongs(found):
     plan = layout(found, columns=3, rows=2)
     assert [(r.column, r.row, r.elite) for r in plan.regions] == [(0, 0, 1), (2, 1, 3)]
     assert reading_order(plan.regions) == [1, 0]
 
 
-def test_all_bodies_are_drawn_at_one_scale_inside_their_regions(found):
-    plan, motions = layout(found, columns=3, rows=2), [swimming(20.0), swimming(5.0)]
-    panel = sheet(found, plan, motions, moments=3).axes[0]
-    spans = []
-    for lines in panel.collections:
-        x = np.concatenate(lines.get_segments())[:, 0]
-        spans.append((np.floor(x.min()), np.floor(x.max()), np.ptp(x)))
-    first, second = spans[:4], spans[4:]
-    assert {(a, b) for a, b, _ in first} == {(0, 0)}
-    assert {(a, b) for a, b, _ in second} == {(2, 2)}
-    np.testing.assert_allclose([span for *_, span in first], 0.8)
-    np.testing.assert_allclose([span for *_, span in second], 0.2)
-
-
-def test_gaits_are_numbered_as_in_the_paper():
-    assert numerals(10) == ["i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x"]
-    higher = [numerals(99)[k - 1] for k in (14, 40, 49, 90, 99)]
-    assert higher == ["xiv", "xl", "xlix", "xc", "xcix"]
-
-
-def test_a_sheet_over_one_axis_is_refused(found):
-    with pytest.raises(ValueError, match="`axes` must be two"):
-        layout(found, axes=["straightness"])
-    with pytest.raises(ValueError, match="`rows` must be from 1 to 20, got 0"):
-        layout(found, rows=0)
+def test_dollars_in_titles_of_axes_are_no_mathematics(found):
+    plan = layout(found, columns=3, rows=2)
+    still = Motion(np.zeros((2, 2, 2)), np.array([[0, 1]]))
+    panel = sheet(found, plan, [still, still], moments=2).axes[0]
+    assert not panel.xaxis.label.get_parse_math()
+    assert not panel.yaxis.label.get_parse_math()
+    bars = archive_map(found, axes=["bending_effort"]).axes[0]
+    assert not bars.yaxis.label.get_parse_math()
 
 
 PARENTS = [(), (), (0,), (0, 1), (2,), (3, 2), (1,)]
@@ -175,15 +202,6 @@ def test_elites_are_the_latest_entries_and_ancestors_those_of_both_parents(archi
     assert found.ancestors([5]) == [5, 3, 2, 1, 0]
     assert found.ancestors([4]) == [4, 2, 0]
     assert found.ancestors([5], both=False) == [5, 3, 0]
-
-
-def test_no_two_entries_of_a_generation_stand_at_one_height(archive):
-    found = family(archive)
-    places = heights(found, list(range(7)))
-    assert sorted(places) == list(range(7))
-    ends = [places[entry] for entry in (4, 5, 6)]
-    assert sorted(ends) == [0, 1, 2]
-    assert places[0] == (places[2] + places[3]) / 2
 
 
 def test_the_chosen_elite_and_all_its_ancestors_are_drawn_in_colour_and_counted(archive):

@@ -1,9 +1,6 @@
 """Figures are drawn of a real run's file, by the library and by the command line."""
 
-import json
 import re
-import subprocess
-import sys
 from functools import partial
 
 import numpy as np
@@ -12,9 +9,9 @@ from small_spec import SMALL_SCENE
 
 from microcosmos import spec
 from microcosmos.archive import variety
-from microcosmos.build import build, local
+from microcosmos.build import local
 from microcosmos.experiments import table_file
-from microcosmos.viz.figures import drawing, motions, reading, strips
+from microcosmos.viz.figures import drawing, reading, sheet, strips
 
 pytestmark = pytest.mark.long
 
@@ -41,7 +38,7 @@ def figure(invoke):
 def test_elites_of_a_file_are_simulated_as_they_were_measured(archive):
     found = reading.read(archive.read_bytes())
     cell = int(found.cells[found.best])
-    (motion,) = motions.motions(archive.read_bytes(), [cell], {})
+    (motion,) = sheet.motions(archive.read_bytes(), [cell], {})
     ends = motion.positions[[0, -1]].mean(1)
     np.testing.assert_allclose(np.hypot(*(ends[1] - ends[0])), found.fitness.max(), rtol=1e-3)
 
@@ -49,28 +46,11 @@ def test_elites_of_a_file_are_simulated_as_they_were_measured(archive):
 def test_a_sheet_is_drawn_and_reports_progress(archive, tmp_path):
     progress = []
     how, out = drawing.Print(), tmp_path / "sheet.svg"
-    drawing.contact(archive, out, how, None, (2, 2), 3, lambda *done: progress.append(done))
+    drawing.contact(out, how, archive, None, (2, 2), 3, lambda *done: progress.append(done))
     assert progress == [(k + 1, len(progress)) for k in range(len(progress))]
     text = (tmp_path / "sheet.caption.txt").read_text()
     assert f"each of {len(progress)} regions" in text
     assert "at 3 moments of its 60 steps" in text
-
-
-def test_a_sheet_states_the_verdicts_of_given_audits(archive, tmp_path, figure):
-    found = reading.read(archive.read_bytes())
-    experiment = build(found.spec)
-    state = experiment.restore(archive.read_bytes(), other_device=True)
-    name = experiment.creature(state, int(found.cells[found.best]))["sha256"]
-    report, out = tmp_path / "audit.json", tmp_path / "sheet.svg"
-    report.write_text(json.dumps({"creature": name, "verdict": {"trusted": False}}))
-    sized = ("--columns", "1", "--rows", "1")
-    figure("sheet", archive, out, *sized, "--audit", report)
-    assert "not trusted" in out.read_text()
-    assert "the physics audit" in out.with_suffix(".caption.txt").read_text()
-    figure("sheet", archive, out, *sized)
-    assert "trusted" not in out.read_text()
-    assert "audit" not in out.with_suffix(".caption.txt").read_text()
-    assert "--audit" in figure("sheet", archive, out, "--audit", archive, code=2)
 
 
 def test_the_fittest_of_each_kind_of_motion_is_shown(archive):
@@ -119,13 +99,6 @@ def test_each_command_of_the_help_writes_its_figure_and_its_caption(archive, tmp
         assert re.search(rf"\b{name}\b", text)
 
 
-def test_the_figure_and_the_name_of_its_file_have_defaults(archive, tmp_path, figure):
-    figure(archive, tmp_path / "map.png")
-    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
-    figure("archive", archive)
-    assert archive.with_suffix(".archive.pdf").exists()
-
-
 def test_mistakes_are_refused_with_the_need(archive, tmp_path, figure):
     assert "must end in .pdf" in figure("archive", archive, tmp_path / "map.bmp", code=2)
     cell = ("--cell", "9999")
@@ -145,15 +118,3 @@ def test_a_file_whose_run_has_a_table_has_no_map(tmp_path):
     path.write_bytes(table_file.save('{"experiment": "gaits"}', rows))
     with pytest.raises(ValueError, match=r"an archive is needed.*table of 'gaits'"):
         drawing.open_archive(path)
-
-
-def test_a_map_is_drawn_without_jax(archive, tmp_path):
-    code = f"""
-import sys
-from pathlib import Path
-from microcosmos.viz.figures import drawing
-drawing.archive(Path({str(archive)!r}), Path({str(tmp_path / "map.pdf")!r}), drawing.Print(),
-                None, "fitness")
-assert "jax" not in sys.modules
-"""
-    subprocess.run([sys.executable, "-c", code], check=True)

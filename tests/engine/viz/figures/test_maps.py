@@ -8,9 +8,9 @@ import pytest
 from scipy.spatial import KDTree
 
 from microcosmos.latex import latex
-from microcosmos.viz.figures import caption, maps, saving, style
-from microcosmos.viz.figures.axes import chosen, fitness_label
-from microcosmos.viz.figures.maps import borders, cells
+from microcosmos.viz.figures import caption, maps, reading, style
+from microcosmos.viz.figures.maps import cells
+from microcosmos.viz.figures.reading import chosen
 
 pytestmark = pytest.mark.long
 
@@ -65,14 +65,6 @@ def test_elites_of_a_container_stand_where_their_measures_are(made):
     assert "Where elites share a place, the fittest is shown. MAP-Elites with" in text
 
 
-def test_logarithmic_axes_have_decades_and_units(made):
-    panel = maps.archive(made(ONE)).axes[0]
-    assert (panel.get_xscale(), panel.get_yscale()) == ("log", "linear")
-    assert panel.get_xlabel() == "Bending effort [rad²]"
-    ticks = panel.get_xticks()
-    assert np.allclose(np.log10(ticks), np.round(np.log10(ticks)))
-
-
 def test_an_unknown_measure_is_refused_with_the_known_ones(made):
     found = made(ONE)
     with pytest.raises(ValueError, match=r"bending_effort, straightness .*got 'pace'"):
@@ -93,11 +85,6 @@ def test_voronoi_cells_are_nearest_to_their_centroids_and_fill_the_square():
     np.testing.assert_allclose(sum(areas), 1)
 
 
-def test_borders_on_one_axis_lie_midway_between_centroids():
-    found = borders(np.array([0.9, 0.1, 0.5]))
-    np.testing.assert_allclose(found, [[0.7, 1.0], [0.0, 0.3], [0.3, 0.7]])
-
-
 def test_a_tessellation_is_drawn_as_its_cells_with_elites_in_colour(made):
     centroids = np.random.default_rng(5).random((12, 2))
     elites = [{"cell": 3, "fitness": 1.0}, {"cell": 8, "fitness": 4.0}]
@@ -111,39 +98,6 @@ def test_a_tessellation_is_drawn_as_its_cells_with_elites_in_colour(made):
     assert place.min() <= centroids[3, 0] <= place.max()
 
 
-def test_one_axis_alone_is_drawn_as_bars_as_high_as_the_fittest(made):
-    elites = [{"cell": 0, "fitness": 1.0}, {"cell": 1, "fitness": 3.0}]  # Of one bin along x.
-    panel = maps.archive(made(elites), axes=["bending_effort"]).axes[0]
-    assert [bar.get_height() for bar in panel.patches] == [3.0]
-
-
-def test_plugin_measures_have_their_declared_titles(made):
-    """Without their module."""
-    plugin = {"source": "0" * 64, "title": "Sway", "unit": "cells"}
-    sway = {"name": "mine.sway", "low": 1e-3, "high": 1.0, "scale": "log10", "plugin": plugin}
-    far = plugin | {"title": "Straight way"}
-    found = made(
-        [{"cell": 0, "fitness": 1.0, "mine.sway": 0.1}, {"cell": 9, "fitness": 2.0}],
-        axes=[sway, {"name": "straightness", "bins": 4}],
-        task={"fitness": "mine.straight", "plugin": far},
-        body={"builder": "mine.cross", "plugin": plugin | {"title": "Cross"}},
-    )
-    figure = maps.archive(found, colour="mine.sway")
-    assert figure.axes[0].get_xlabel() == figure.axes[1].get_ylabel() == "Sway [cells]"
-    assert figure.axes[1].get_yscale() == "log"
-    assert fitness_label(found) == "Straight way [cells]"
-    text = caption.of_archive(found, None)
-    assert "over sway [cells] and straightness;" in text
-    assert "Fitness is “Straight way” (mine.straight) over 2,000 steps" in text
-    assert "the body “Cross” (mine.cross), controlled by" in text
-
-
-def test_a_caption_of_one_axis_names_no_ring(made):
-    found = made(ONE)
-    assert "ring marks" in caption.of_archive(found, None)
-    assert "; the fittest has 1." in caption.of_archive(found, ["straightness"])
-
-
 @pytest.fixture
 def found(made):
     elites = [{"cell": cell, "fitness": cell / 2} for cell in (0, 3, 9, 17)]
@@ -153,7 +107,7 @@ def found(made):
 def drawn(found, suffix, monkeypatch, when):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", str(when))
     text = caption.of_archive(found, None)
-    return saving.encoded(maps.archive(found), suffix, caption=text)
+    return style.encoded(maps.archive(found), suffix, caption=text)
 
 
 @pytest.mark.parametrize("suffix", [".pdf", ".svg", ".png"])
@@ -164,42 +118,24 @@ def test_the_same_archive_gives_the_same_bytes_at_any_time(found, suffix, monkey
     assert drawn(found, suffix, monkeypatch, 10**9) == first
 
 
-def test_a_pdf_has_truetype_letters_and_its_caption(found, monkeypatch):
-    data = drawn(found, ".pdf", monkeypatch, 0)
-    assert b"/FontFile2" in data
-    assert b"/Type3" not in data
-    assert b"/CreationDate" not in data
-    assert b"Archive of 4 elites" in data or "Archive of 4".encode("utf-16-be") in data
-
-
-def test_width_is_that_of_a_column(found):
-    for width, inches in (("single", 85 / 25.4), ("double", 178 / 25.4), ("3.5in", 3.5)):
-        size = maps.archive(found, width=style.millimetres(width)).get_size_inches()
-        np.testing.assert_allclose(size[0], inches)
-    for wrong in ("broad", "4", "2000mm", "..mm"):
-        with pytest.raises(ValueError, match="`width` must be single"):
-            style.millimetres(wrong)
-
-
-def test_a_caption_states_the_spec(found):
-    text = caption.of_archive(found, None)
-    for part in (
-        "4 elites in 20 cells (20.0 %)",
-        "the fittest (8.5)",
-        "bending effort [rad²] and straightness",
-        "MAP-Elites (emitter neat), 2 generations of 64 (32 evaluations, seed 4)",
-        "the speed of swimming over 2,000 steps",
-        "a filament of 24 nodes, controlled by a CPPN (period 200 steps)",
-        "48 × 48 cells, ν = 0.2 cells²/step",
-        "Microcosmos 0.1.0 on cpu, A Model avx2.",
-    ):
-        assert part in text
-
-
 def test_a_form_that_is_not_force_free_is_said_to_be(made):
     paper = {"projection": "none", "theta_feedback": 0}
     text = caption.of_archive(made(ONE, coupling=paper, search={"feasible": False}), None)
     assert "(coupling not force-free)" in text
+
+
+@pytest.mark.parametrize(
+    ("fitness", "world", "said", "label"),
+    [
+        ("cost_of_transport", {}, "minus the work on the fluid", "−Cost of transport"),
+        ("upstream", {"flow": {"kind": "poiseuille"}}, "the speed along −x", "−Advance"),
+        ("through", {"obstacles": [{"x": 20, "y": 8}]}, "the speed along x", "Advance"),
+    ],
+)
+def test_caption_and_colour_bar_state_the_fitness(made, fitness, world, said, label):
+    found = made(ONE, task={"fitness": fitness}, world=world)
+    assert f"Fitness is {said}" in caption.of_archive(found, None)
+    assert reading.fitness_label(found).startswith(label)
 
 
 def test_latex_escapes_every_letter_that_means_something():
@@ -214,11 +150,11 @@ def test_latex_escapes_every_letter_that_means_something():
 def test_a_published_figure_has_its_caption_beside_it_and_below(found, tmp_path):
     text, figure = caption.of_archive(found, None), maps.archive(found)
     high = figure.get_size_inches()[1]
-    written = saving.publish(figure, tmp_path / "map.svg", text, under=True, tex=True)
+    written = style.publish(figure, tmp_path / "map.svg", text, under=True, tex=True)
     assert [path.name for path in written] == ["map.svg", "map.caption.txt", "map.caption.tex"]
     assert written[1].read_text() == text + "\n"
     assert r"$\nu$ = 0.2" in written[2].read_text()
     assert figure.get_size_inches()[1] > high
     assert "Archive of 4 elites" in written[0].read_text()
     with pytest.raises(ValueError, match=r"must end in \.pdf"):
-        saving.publish(figure, tmp_path / "map.bmp", text)
+        style.publish(figure, tmp_path / "map.bmp", text)

@@ -34,11 +34,5 @@ def test_the_way_of_a_stroke_is_upwards(degrees):
     np.testing.assert_allclose(chord / np.linalg.norm(chord), turned, atol=2e-3)
 
 
-def test_a_body_that_stays_is_not_turned():
-    found = strip(0, swimming((0.0, 0.0)))
-    assert found.advance == pytest.approx(0, abs=1e-3)
-    assert np.all(np.isfinite(found.poses))
-
-
 def test_without_two_strokes_all_frames_are_shown():
     assert len(strip(0, swimming((1.0, 0.0), strokes=0)).poses) == FRAMES

@@ -17,11 +17,11 @@ export function Shortcuts({ onClose }: { onClose: () => void }) {
         </button>
       </header>
       <div class="shortcut-lists">
-        {text.keys.map(([where, keys]) => (
+        {Object.entries(text.keys).map(([where, keys]) => (
           <section key={where}>
             <h3>{where}</h3>
             <dl>
-              {keys.map(([key, does]) => (
+              {Object.entries(keys).map(([key, does]) => (
                 <div key={key}>
                   <dt>
                     {key.split(" ").map((each) => (

@@ -67,7 +67,7 @@ describe("the view of curves", () => {
 });
 
 describe("infeasible evaluations", () => {
-  const summary = { "infeasible: supersonic": [null, 2, 1], "infeasible: non-finite": [4, null, 3] };
+  const summary = { "infeasible.supersonic": [null, 2, 1], "infeasible.non-finite": [4, null, 3] };
 
   it("are counted by reason, most frequent first, and drawn as sums", () => {
     const curves = curvesOf([1, 2, 3], 16, summary);
@@ -84,7 +84,7 @@ describe("infeasible evaluations", () => {
 
   it("have a sentence for each reason of the engine", () => {
     const reasons = ["non-finite", "supersonic", "limits", "compressible", "impulse", "crossing"];
-    const counted = Object.fromEntries(reasons.map((reason) => [`infeasible: ${reason}`, [1]]));
+    const counted = Object.fromEntries(reasons.map((reason) => [`infeasible.${reason}`, [1]]));
     const plot = workOf(curvesOf([1], 16, counted)).find(({ title }) => title === "Infeasible so far");
     expect(plot!.series.map(({ about }) => about)).toEqual(
       reasons.map(() => expect.stringMatching(/^[A-Z].*\.$/)),
@@ -96,7 +96,7 @@ describe("infeasible evaluations", () => {
     const length = 2 * MAX_POINTS + 3;
     for (let generation = 1; generation <= length; generation++) {
       const figures = { qd_score: 1, coverage: 1, best: 1, mean: 1, infeasible: 0, evaluations: 1 };
-      const summary = { "infeasible: non-finite": 1, ...(generation === 2 && { rare: 5 }) };
+      const summary = { "infeasible.non-finite": 1, ...(generation === 2 && { rare: 5 }) };
       curves = appendCurves(curves, { run: "", generation, seconds: 1, ...figures, summary });
     }
     expect(curves.generation.length).toBeLessThanOrEqual(MAX_POINTS + 1);
@@ -113,9 +113,9 @@ describe("curves", () => {
     expect(workOf(bare)).toEqual([]);
     const complete = curvesOf([1], 16, {
       corrected_qd_score: [0.8],
-      "neat: inserted": [3],
-      "iso+line: inserted": [4],
-      "neat: improved": [0],
+      "emitter.neat.inserted": [3],
+      "emitter.iso+line.inserted": [4],
+      "emitter.neat.improved": [0],
       device_seconds: [0.1],
     });
     expect(scoresOf(complete)[0]!.series[1]).toMatchObject({ y: [0.8], dots: true });

@@ -1,6 +1,7 @@
 /** The plots of a run over its generations. */
 
-import { type Column, type Curves, INFEASIBLE } from "../../store/curves";
+import type { Column, Curves } from "../../store/curves";
+import { type Kind, nameOf, valuesOf } from "../../store/figureNames";
 import { number, percent } from "../../ui/format";
 import { text } from "./text";
 
@@ -59,8 +60,8 @@ export function scoresOf(curves: Curves): Plot[] {
 export function workOf(curves: Curves): Plot[] {
   const deviceSeconds = singleSeries(withoutFirst(curves), "device_seconds", "--curve-2", false);
   const plots: Plot[] = [
-    { title: text.inserted, format: number, series: emitterSeries(curves, ": inserted") },
-    { title: text.improved, format: number, series: emitterSeries(curves, ": improved") },
+    { title: text.inserted, format: number, series: emitterSeries(curves, "emitter.*.inserted") },
+    { title: text.improved, format: number, series: emitterSeries(curves, "emitter.*.improved") },
     { title: text.hitRate, format: percent, series: singleSeries(curves, "hit_rate", "--series-3", true) },
     { title: text.deviceSeconds, format: number, series: deviceSeconds },
     { title: text.infeasible, format: number, series: infeasibleSoFar(curves) },
@@ -80,10 +81,9 @@ export const REASONS: Record<string, string> = {
 
 /** Infeasible evaluations by reason, most frequent first. */
 export function infeasibleBy({ summary }: Curves): [reason: string, count: number][] {
-  return Object.entries(summary)
-    .filter(([name]) => name.startsWith(INFEASIBLE))
-    .map(([name, column]): [string, number] => [
-      name.slice(INFEASIBLE.length),
+  return valuesOf("infeasible.*", summary)
+    .map(([reason, column]): [string, number] => [
+      reason,
       column.reduce<number>((sum, value) => sum + (value ?? 0), 0),
     ])
     .sort((a, b) => b[1] - a[1]);
@@ -92,18 +92,13 @@ export function infeasibleBy({ summary }: Curves): [reason: string, count: numbe
 function infeasibleSoFar(curves: Curves): Series[] {
   return infeasibleBy(curves).map(([reason], i) => {
     let sum = 0;
-    const y = curves.summary[INFEASIBLE + reason]!.map((value) => (sum += value ?? 0));
+    const y = curves.summary[nameOf("infeasible.*", reason)]!.map((value) => (sum += value ?? 0));
     return { name: reason, about: REASONS[reason], colour: `--series-${3 + (i % 3)}`, y };
   });
 }
 
-function emitterSeries({ summary }: Curves, ending: string): Series[] {
-  const names = Object.keys(summary).filter((name) => name.endsWith(ending));
-  return names.map((name, i) => ({
-    name: name.slice(0, -ending.length),
-    colour: `--series-${1 + (i % 5)}`,
-    y: summary[name]!,
-  }));
+function emitterSeries({ summary }: Curves, kind: Kind): Series[] {
+  return valuesOf(kind, summary).map(([name, y], i) => ({ name, colour: `--series-${1 + (i % 5)}`, y }));
 }
 
 function singleSeries({ summary }: Curves, name: string, colour: string, dots: boolean): Series[] {

@@ -1,18 +1,18 @@
-/** The live water around a creature, which pointers push; they pull the creature itself. */
+/** The live water around a creature, which begins with the inputs; pointers push the water and pull the body. */
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { Replay } from "../../decode/replay";
+import { type Replay, motionOnly } from "../../decode/replay";
 import { CanvasStage } from "../../replay/CanvasStage";
-import { type FieldName, fieldOf } from "../../replay/fields";
-import { FluidPainter } from "../../replay/fluid";
+import { type FieldName, FluidPainter, fieldOf } from "../../replay/fields";
 import { BODY_INK } from "../../replay/motion";
 import { drawScene, sceneOf } from "../../replay/scene";
-import type { Live } from "../../simulate/live";
+import { Live } from "../../simulate/simulator";
 import type { Frame, Stage } from "../../simulate/swim";
 import { type Size, type Theme, useTheme } from "../../ui/canvas";
-import { Dye } from "./dye";
 import { text } from "./text";
 import { type View, type Wishes, awayOf, nodeAt, placesOf, pushOf } from "./touch";
+import { type Particles, initialPositions, velocityAt } from "../../replay/tracers";
+import { decodeEvaluation } from "../../decode/evaluation";
 
 /** Frames in a stroke. */
 const FRAMES = 90;
@@ -20,7 +20,7 @@ const FRAMES = 90;
 interface Props {
   live: Live;
   viscosity: number;
-  /** Of the stroke, relative to the recorded one. */
+  /** Speed of the stroke, relative to the recorded one. */
   speed: number;
   field: FieldName | "dye";
   wishes: Wishes;
@@ -120,26 +120,64 @@ function drawPull(canvas: HTMLCanvasElement, size: Size, view: View, { pull }: W
 
 /** A replay of one frame. */
 function replayOf({ size }: Stage, { positions, edges, vorticity, velocity, scales }: Frame): Replay {
-  return {
-    header: {
-      creature: "",
-      frames: 1,
-      every: 1,
-      steps: 0,
-      nodes: positions.length / 2,
-      edges,
-      joints: [],
-      size,
-      vorticity: { scale: scales.vorticity },
-      velocity: { scale: scales.velocity },
-      energy: { scale: 1, frames: 0 },
-      fitness: { recorded: null, replayed: null, difference: null },
-    },
-    positions,
-    angles: new Float32Array(0),
-    lengths: new Float32Array(0),
-    vorticity,
-    velocity,
-    energy: new Uint8Array(0),
-  };
+  const moments = { frames: 1, every: 1, steps: 0 };
+  const fields = { vorticity: { scale: scales.vorticity }, velocity: { scale: scales.velocity } };
+  const header = { creature: "", ...moments, nodes: positions.length / 2, edges, size, ...fields };
+  return motionOnly(header, { positions, vorticity, velocity });
+}
+
+/** Cells per particle. */
+const CELLS = 1.5;
+
+/** Particles that drift in live water. */
+class Dye implements Particles {
+  private readonly places: Float32Array;
+
+  /** `replay` is the present state, as one frame. */
+  constructor(public replay: Replay) {
+    this.places = initialPositions(...replay.header.size, CELLS);
+  }
+
+  at(): Float32Array {
+    return this.places;
+  }
+
+  /** Drift for some steps with the water of the next state. */
+  drift(replay: Replay, steps: number): void {
+    this.replay = replay;
+    for (let i = 0; i < this.places.length; i += 2) {
+      const [u, v] = velocityAt(replay, 0, this.places[i]!, this.places[i + 1]!);
+      this.places[i]! += steps * u;
+      this.places[i + 1]! += steps * v;
+    }
+  }
+}
+
+/** Null until the creature is evaluated; it ends with the component, or with other inputs. */
+export function useLive(inputs: ArrayBuffer | null, onFail: (reason: unknown) => void): Live | null {
+  const [live, setLive] = useState<Live | null>(null);
+  useEffect(() => {
+    if (!inputs) return;
+    let begun: Live | null = null;
+    let active = true;
+    begin(inputs)
+      .then((found) => {
+        begun = found;
+        if (active) setLive(found);
+        else found.end();
+      })
+      .catch((reason) => active && onFail(reason));
+    return () => {
+      active = false;
+      begun?.end();
+      setLive(null);
+    };
+  }, [inputs]);
+  return live;
+}
+
+async function begin(inputs: ArrayBuffer): Promise<Live> {
+  const { uncovered } = decodeEvaluation(inputs);
+  if (uncovered !== null) throw new Error(text.notCovered(uncovered));
+  return Live.begin(inputs);
 }

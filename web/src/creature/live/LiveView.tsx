@@ -5,12 +5,11 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { decodeEvaluation } from "../../decode/evaluation";
 import type { FieldName } from "../../replay/fields";
 import { text as replayText } from "../../replay/text";
-import type { Live, Push } from "../../simulate/live";
+import type { Live, Push } from "../../simulate/simulator";
 import { usePolled } from "../../store/polling";
 import { number, shortId } from "../../ui/format";
-import { Segments } from "../../ui/Select";
+import { Segments, Slider } from "../../ui/Select";
 import { LiveStage } from "./LiveStage";
-import { Slider } from "./Slider";
 import { text } from "./text";
 import { type Wishes, noWishes } from "./touch";
 
@@ -19,11 +18,7 @@ const FIELDS = [
   ["speed", replayText.fields.speed],
   ["dye", text.dye],
 ] as const;
-/** Of the slider of the stroke's speed. */
-const SPEEDS = [0.25, 2] as const;
-/** Viscosities of the slider, whose values are powers of 10. */
-const RANGE = [-2, 0] as const;
-/** What the buttons do beside the creature: a push, and a pull of its first node for a while. */
+/** The buttons push the water beside the creature, and pull its first node for a while. */
 const PUSH: Push = { away: [0, 6], velocity: [0.05, -0.05] };
 const PULL = { node: 0, away: [0, 10] as [number, number] };
 const PULL_MS = 1000;
@@ -32,7 +27,7 @@ const PULL_MS = 1000;
 export interface Others {
   /** Read the inputs of the evaluation of a creature; null while they are prepared. */
   readInputs: (creature: string) => Promise<ArrayBuffer | null>;
-  /** What a creature is picked with. */
+  /** The controls that pick a creature. */
   pick: (onPick: (creature: string) => void) => ComponentChildren;
 }
 
@@ -54,14 +49,17 @@ export function LiveView({ live, others, onFail }: Props) {
       <LiveStage {...{ live, viscosity, speed, field, wishes, onFail }} onRefuse={refuse} />
       <div class="row">
         <Segments label={replayText.field} choices={FIELDS} value={field} onSelect={setField} />
+        {/* Its values are powers of 10. */}
         <Slider
           title={text.viscosity(number(viscosity, 2))}
-          {...{ range: RANGE, step: 0.05, value: Math.log10(viscosity), shown: viscosity }}
+          {...{ min: -2, max: 0, step: 0.05, value: Math.log10(viscosity) }}
+          reading={number(viscosity, 2)}
           onChange={(power) => setViscosity(10 ** power)}
         />
         <Slider
           title={text.strokeSpeed(number(speed, 2))}
-          {...{ range: SPEEDS, step: 0.25, value: speed, shown: speed }}
+          {...{ min: 0.25, max: 2, step: 0.25, value: speed }}
+          reading={number(speed, 2)}
           onChange={setSpeed}
         />
         <button onClick={() => wishes.pushes.push(PUSH)}>{text.push}</button>
@@ -87,31 +85,31 @@ function pullAWhile(wishes: Wishes): void {
   }, PULL_MS);
 }
 
-/** Let a picked creature join once its inputs are there, and tell how far that is. */
+/** Let a picked creature join once its inputs are loaded, with a note on the progress. */
 function useJoining(others: Others | null, wishes: Wishes) {
   const [picked, setPicked] = useState<string | null>(null);
-  const [told, tell] = useState("");
+  const [note, setNote] = useState("");
   const name = useRef("");
   const { value, error } = usePolled(picked && others ? () => others.readInputs(picked) : null, [picked]);
   useEffect(() => {
     if (!value) return;
     const { uncovered } = decodeEvaluation(value);
     if (uncovered === null) wishes.joining.push(value);
-    tell(uncovered === null ? text.joined(name.current) : text.uncovered(name.current, uncovered));
+    setNote(uncovered === null ? text.joined(name.current) : text.uncovered(name.current, uncovered));
     setPicked(null);
   }, [value]);
   useEffect(() => {
     if (!error) return;
-    tell(text.refused(name.current, error));
+    setNote(text.refused(name.current, error));
     setPicked(null); // It can be picked again.
   }, [error]);
   return {
-    note: told,
+    note,
     pick: (creature: string) => {
       name.current = shortId(creature);
-      tell(text.joining(name.current));
+      setNote(text.joining(name.current));
       setPicked(creature);
     },
-    refuse: (reason: string) => tell(text.refused(name.current, reason)),
+    refuse: (reason: string) => setNote(text.refused(name.current, reason)),
   };
 }

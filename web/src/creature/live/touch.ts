@@ -1,15 +1,15 @@
-/** What visitors do to live water with a pointer: push it, or pull the body. */
+/** Pointers in live water: they push it, or pull the body. */
 
 import type { Replay } from "../../decode/replay";
 import { type Point, meanOf, positionsAt, wrap } from "../../replay/motion";
-import type { Pull, Push } from "../../simulate/live";
+import type { Pull, Push } from "../../simulate/simulator";
 
 /** The fastest push, in cells a step. */
 const FASTEST = 0.05;
-/** How near to a node a pull begins: in cells, and in pixels. */
+/** The distance from a node within which a pull begins: in cells, and in pixels. */
 const NEAR = { cells: 1.5, pixels: 14 };
 
-/** What waits for the next steps. */
+/** Requests of a visitor, which the next steps carry out. */
 export interface Wishes {
   pushes: Push[];
   pull: Pull | null;
@@ -29,7 +29,7 @@ export interface View {
 type Pointer = Pick<PointerEvent, "clientX" | "clientY" | "movementX" | "movementY">;
 type Box = Pick<DOMRect, "left" | "top" | "width">;
 
-/** Where a pointer is, in cells from the middle. */
+/** The place of a pointer, in cells from the middle. */
 export function awayOf({ clientX, clientY }: Pointer, box: Box, { replay }: View): Point {
   const [width, height] = replay.header.size;
   const scale = box.width / width;

@@ -1,7 +1,7 @@
 /** One field of a spec: name, control, help and errors. */
 
-import type { Json } from "../../api/types";
-import { count, number } from "../../ui/format";
+import type { FieldError, Json } from "../../api/types";
+import { capitalised, count, number } from "../../ui/format";
 import { Term } from "../../ui/Term";
 import { valueAt, typed, typedJson, typedList } from "./document";
 import type { Leaf, NumberField, Range, Choice, Multiple } from "./fields";
@@ -15,7 +15,7 @@ export interface FormState {
   document: Json;
   original: Json;
   changed: ReadonlySet<string>;
-  messages: ReadonlyMap<string, string[]>;
+  errors: ReadonlyMap<string, FieldError[]>;
   /** The last change that the form made by itself. */
   note: Note | null;
   change: (path: string, value: Json) => void;
@@ -28,16 +28,16 @@ const WIDE = ["list", "multiple", "nested"];
 export function Entry({ field, state }: { field: Leaf; state: FormState }) {
   const { path, kind, title, help } = field;
   const value = valueAt(state.document, path);
-  const messages = state.messages.get(path) ?? [];
+  const errors = state.errors.get(path) ?? [];
   const unit = kind === "number" ? unitOf(field, state.document) : "";
   const id = `field-${path}`;
-  const mend = messages.length > 0 ? mendOf(field, value, messages) : null;
+  const mend = errors.length > 0 ? mendOf(field, value, errors) : null;
   return (
     <div class={`entry ${WIDE.includes(kind) ? "wide" : ""}`}>
       <EntryName {...{ path, title, state }} target={kind === "multiple" ? undefined : id} />
       <Input
         {...{ field, value, unit, id }}
-        aria-invalid={messages.length > 0}
+        aria-invalid={errors.length > 0}
         aria-describedby={`${id}-about`}
         onChange={(next) => state.change(path, next)}
       />
@@ -45,7 +45,7 @@ export function Entry({ field, state }: { field: Leaf; state: FormState }) {
         <p class="help">
           {help} {aboutPlugin(field, value)} <span class="range">{rangeOf(field, unit)}</span>
         </p>
-        <Messages messages={messages} />
+        <Errors errors={errors} />
         {mend !== null && (
           <button type="button" class="link small" onClick={() => state.change(path, mend)}>
             {text.setTo(number(mend, 6))}
@@ -116,7 +116,7 @@ function rangeOf(field: Leaf, unit: string): string {
   const { low = 0, high = 0 } = field.range;
   if (Math.max(Math.abs(low), Math.abs(high)) >= 1e9) return "";
   const range = rangeText(field.range);
-  return range && capital(`${range} ${unit}`.trimEnd());
+  return range && capitalised(`${range} ${unit}`.trimEnd());
 }
 
 /** `16 to 2,048`, `more than 0`, or nothing. */
@@ -132,12 +132,14 @@ export function rangeText({ low, lowOpen, high, highOpen }: Range): string {
   return parts.filter(Boolean).join(", ");
 }
 
-const capital = (sentence: string) => sentence.charAt(0).toUpperCase() + sentence.slice(1);
+export const Errors = ({ errors = [] }: { errors?: readonly FieldError[] }) => (
+  <Messages messages={errors.map(({ reason }) => reason)} />
+);
 
 export function Messages({ messages = [] }: { messages?: readonly (string | null)[] }) {
   return [...new Set(messages.filter((message) => message !== null))].map((message) => (
     <p key={message} class="wrong-text small" role="alert">
-      {capital(message.replaceAll("`", ""))}
+      {capitalised(message.replaceAll("`", ""))}
     </p>
   ));
 }

@@ -68,9 +68,9 @@ function Problems({ problem, errors }: { problem: string | null; errors: FieldEr
   return (
     <div id="spec-json-problems" role="status">
       {problem && <p class="wrong-text">{problem}</p>}
-      {errors.map(({ field, message }) => (
-        <p key={`${field} ${message}`} class="wrong-text">
-          <code>{field}</code>: {message.replaceAll("`", "")}
+      {errors.map(({ field, reason }) => (
+        <p key={`${field} ${reason}`} class="wrong-text">
+          <code>{field}</code>: {reason.replaceAll("`", "")}
         </p>
       ))}
     </div>

@@ -7,7 +7,7 @@ import { Options } from "../../ui/Select";
 import { words } from "../../ui/format";
 import { countWithin, isOff, isApplicable, partOf, valueAt, withChoice } from "./document";
 import type { Field, Rows, Section, Union } from "./fields";
-import { type FormState, Entry, EntryName, Messages } from "./Entry";
+import { type FormState, Entry, EntryName, Errors } from "./Entry";
 import { messageOf } from "./partners";
 import { text } from "./text";
 
@@ -31,7 +31,7 @@ export function SpecForm({ parts, state }: { parts: (Section | Union)[]; state: 
 
 /** A section that can be closed; an error opens it. */
 function Card({ part, state }: { part: Section | Union; state: FormState }) {
-  const wrong = part.path !== "" && countWithin(state.messages.keys(), part.path) > 0;
+  const wrong = part.path !== "" && countWithin(state.errors.keys(), part.path) > 0;
   const open = wrong || !state.closed.has(part.path);
   const name = part.path || "general";
   return (
@@ -73,7 +73,7 @@ function Part({ part, state, kind, open = true, children }: PartProps) {
       {part.help && <p class="help">{part.help}</p>}
       <div hidden={!open} id={kind === "inside" ? `inside-${part.path || "general"}` : undefined}>
         {part.kind === "union" && <KindSelect union={part} state={state} />}
-        <Messages messages={state.messages.get(part.path)} />
+        <Errors errors={state.errors.get(part.path)} />
         {section && !off && <Fields section={section} state={state} />}
         {children}
       </div>
@@ -168,7 +168,7 @@ function RowList({ rows, state }: { rows: Rows; state: FormState }) {
       <div class="rows-title">
         <EntryName path={rows.path} title={rows.title} state={state} />
       </div>
-      <Messages messages={state.messages.get(rows.path)} />
+      <Errors errors={state.errors.get(rows.path)} />
       {rows.help && <p class="help">{rows.help}</p>}
       {items.map((_, i) => (
         <Part key={`${i} of ${items.length}`} part={rows.row(i)} state={state} kind="form-row">
@@ -199,7 +199,7 @@ export function Outline({ parts, state }: Props) {
   return (
     <nav class="outline" aria-label={text.sections}>
       {parts.map((part) => {
-        const wrong = within(part, state.messages.keys(), parts);
+        const wrong = within(part, state.errors.keys(), parts);
         const changed = within(part, state.changed, parts);
         return (
           <button type="button" key={part.path} class="plain" onClick={() => goToSection(part.path, state)}>

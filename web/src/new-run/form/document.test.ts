@@ -4,7 +4,7 @@ import {
   changedPaths,
   countWithin,
   equalPreset,
-  messagesByPath,
+  errorsByPath,
   schemaErrors,
   typed,
   typedJson,
@@ -21,11 +21,9 @@ describe("a spec under a form", () => {
 
   const at = (...fields: string[]) => {
     const whole = { ...spec, world: { width: 32, steric: null }, body: { builder: "chain" } };
-    return messagesByPath(
-      fields.map((field) => ({ field, message: field })),
-      FORM,
-      whole,
-    );
+    const errors = fields.map((field) => ({ field, reason: field }));
+    const found = errorsByPath(errors, FORM, whole);
+    return new Map([...found].map(([path, inside]) => [path, inside.map(({ reason }) => reason)]));
   };
 
   it("is changed by path, and never in place", () => {
@@ -81,7 +79,7 @@ describe("a spec under a form", () => {
       axes: [{ bins: 4 }],
     };
     expect(schemaErrors(FORM, whole)).toEqual([]);
-    expect(schemaErrors(FORM, withValue(whole, path, value))).toEqual([{ field, message }]);
+    expect(schemaErrors(FORM, withValue(whole, path, value))).toEqual([{ field, reason: message }]);
   });
 
   it("shows the server's errors at the field they name, in either notation of an index", () => {

@@ -1,6 +1,7 @@
 /** The spec under a form: reading, changing, comparing and checking its values by path. */
 
 import type { FieldError, Json, Spec, Experiment, Preset } from "../../api/types";
+import { parseJson } from "../../decode/json";
 import { isObject } from "../../run/spec/difference";
 import { number } from "../../ui/format";
 import type { Field, List, NumberField, Section, Multiple, Union } from "./fields";
@@ -48,19 +49,18 @@ export function numberError(field: NumberField, value: Json): string | null {
 }
 
 /**
- * Messages by the path of the element that shows them: the named field, or else the part around it.
+ * Errors by the path of the element that shows them: the named field, or else the part around it.
  * `descriptors[0].low` and `descriptors.0.low` are the same place.
  */
-export function messagesByPath(errors: FieldError[], form: Section, document: Json): Map<string, string[]> {
+export function errorsByPath(errors: FieldError[], form: Section, document: Json): Map<string, FieldError[]> {
   const shown = new Set(messagePaths(form, document));
-  const messages = new Map<string, string[]>();
-  for (const { field, message } of errors) {
-    let path = field.replace(/\[(\d+)\]/g, ".$1").replace(/^\./, "");
+  const found = new Map<string, FieldError[]>();
+  for (const error of errors) {
+    let path = error.field.replace(/\[(\d+)\]/g, ".$1").replace(/^\./, "");
     while (!shown.has(path)) path = path.slice(0, Math.max(0, path.lastIndexOf(".")));
-    const known = messages.get(path) ?? [];
-    if (!known.includes(message)) messages.set(path, [...known, message]);
+    found.set(path, [...(found.get(path) ?? []), error]);
   }
-  return messages;
+  return found;
 }
 
 /** A typed list of numbers; other words stay text. */
@@ -71,10 +71,10 @@ export function typedList(text: string): Json[] {
     .map(typed);
 }
 
-/** Typed JSON; other text as it is. */
+/** Typed JSON; other text as it is, also that in which a name is given twice. */
 export function typedJson(text: string): Json {
   try {
-    return JSON.parse(text);
+    return parseJson(text);
   } catch {
     return text;
   }
@@ -82,8 +82,8 @@ export function typedJson(text: string): Json {
 
 export function schemaErrors(form: Section, document: Json): FieldError[] {
   return leavesOf(form, document).flatMap((field) => {
-    const message = leafError(field, valueAt(document, field.path));
-    return message ? [{ field: field.path, message }] : [];
+    const reason = leafError(field, valueAt(document, field.path));
+    return reason ? [{ field: field.path, reason }] : [];
   });
 }
 

@@ -3,7 +3,7 @@ import type { Json, Schema } from "../../api/types";
 import { essentialsOf, mendOf, searched } from "./essentials";
 import { type Leaf, formOf } from "./fields";
 import { partsOf } from "./SpecForm";
-import { nameOf } from "../naming";
+import { nameOf } from "../editorState";
 
 const number = (low: number, high: number, description = "") => ({
   type: "number",
@@ -75,22 +75,20 @@ describe("the mend of a wrong value", () => {
     expect(mendOf(leaf("search.generations"), -4, [])).toBe(1);
   });
 
-  it("is the number that a message of the server names", () => {
-    const messages = ["World.width must be at least 1,069 for this body"];
-    expect(mendOf(leaf("search.generations"), 30, messages)).toBe(1069);
-    expect(mendOf(leaf("search.generations"), 30, ["It must be odd"])).toBe(null);
-    expect(mendOf(leaf("world.viscosity"), 0.5, ["`world.viscosity` must be at least 1e-3"])).toBe(0.001);
+  it("is the bound that an error of the server has as data, whatever its words say", () => {
+    const error = (bound: object) => [
+      { field: "search.generations", reason: "must be at least 5", ...bound },
+    ];
+    expect(mendOf(leaf("search.generations"), 30, error({ least: 1069 }))).toBe(1069);
+    expect(mendOf(leaf("search.generations"), 30, error({}))).toBe(null);
+    expect(mendOf(leaf("search.generations"), 30, error({ least: null, most: null }))).toBe(null);
+    expect(mendOf(leaf("world.viscosity"), 0.5, error({ least: 1e-3 }))).toBe(0.001);
   });
 
   it("is whole where a whole number is needed", () => {
-    const bounds = (bound: string) => [`\`world.height\` must be at ${bound} 77.46 cells`];
-    expect(mendOf(leaf("search.generations"), 30, bounds("least"))).toBe(78);
-    expect(mendOf(leaf("search.generations"), 300, bounds("most"))).toBe(77);
-  });
-
-  it("is none where a product is wrong", () => {
-    const product = "`rate` times `amplitude` must be at least 1e-6, or float32 loses what is collected";
-    expect(mendOf(leaf("world.viscosity"), 0.5, [product])).toBe(null);
+    const error = (bound: object) => [{ field: "search.generations", reason: "is wrong", ...bound }];
+    expect(mendOf(leaf("search.generations"), 30, error({ least: 77.46 }))).toBe(78);
+    expect(mendOf(leaf("search.generations"), 300, error({ most: 77.46 }))).toBe(77);
   });
 
   it("is none for a right value, or for what is no number", () => {

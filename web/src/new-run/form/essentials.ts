@@ -1,6 +1,6 @@
 /** The few settings that most people change, and a search among all others. */
 
-import type { Json } from "../../api/types";
+import type { FieldError, Json } from "../../api/types";
 import { leavesOf } from "./document";
 import type { Field, Leaf, Section, Union } from "./fields";
 import { text } from "./text";
@@ -39,20 +39,17 @@ function within(field: Field, words: readonly string[]): Field | null {
   return insides.some((inside) => within(inside, words)) ? field : null;
 }
 
-/** A message of the server about one number that does not fit to the others, not about a product. */
-const LEAST_OR_MOST = /^[^`]*(?:`[^`]*`)?[^`]* must be at (least|most) ([\d.,]*\d(?:e[+-]?\d+)?)/;
-
-/** A number that mends a wrong one: the nearest permitted, or the one that a message names; else null. */
-export function mendOf(field: Leaf, value: Json, messages: readonly string[]): number | null {
+/** A number that mends a wrong one: the nearest permitted, or the bound of an error; else null. */
+export function mendOf(field: Leaf, value: Json, errors: readonly FieldError[]): number | null {
   if (field.kind !== "number" || typeof value !== "number") return null;
   const { low = -Infinity, lowOpen, high = Infinity, highOpen } = field.range;
   if ((lowOpen && value <= low) || (highOpen && value >= high)) return null;
   const whole = field.whole ? Math.round(value) : value;
   const mended = Math.min(high, Math.max(low, whole));
   if (mended !== value) return mended;
-  const [, bound, named] = messages.map((message) => LEAST_OR_MOST.exec(message)).find(Boolean) ?? [];
-  if (named === undefined) return null;
-  const number = Number(named.replaceAll(",", ""));
-  if (!field.whole) return number;
-  return bound === "least" ? Math.ceil(number) : Math.floor(number);
+  for (const { least, most } of errors) {
+    if (typeof least === "number") return field.whole ? Math.ceil(least) : least;
+    if (typeof most === "number") return field.whole ? Math.floor(most) : most;
+  }
+  return null;
 }

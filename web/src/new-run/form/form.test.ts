@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Schema, Spec } from "../../api/types";
-import { changedPaths, messagesByPath, partOf, schemaErrors, valueAt, withChoice } from "./document";
+import { changedPaths, errorsByPath, partOf, schemaErrors, valueAt, withChoice } from "./document";
 import { type Choice, type Field, type Rows, type Section, type Union, formOf } from "./fields";
 import { FORM, experiment } from "./form.fixture";
 import { withDefaults } from "./schema";
@@ -104,9 +104,9 @@ describe("a form", () => {
     expect(selected.fields.map(({ path }) => path)).toEqual(["emitters.2.step"]);
     const spec: Spec = { emitters: [{ operator: "any" }, { operator: "line", step: 0 }] };
     const wrong = schemaErrors(FORM, spec).filter(({ field }) => field.startsWith("emitters"));
-    expect(wrong).toEqual([{ field: "emitters.1.step", message: "Needs more than 0." }]);
-    const error = { field: "emitters.1.step", message: "no" };
-    expect([...messagesByPath([error], FORM, spec).keys()]).toEqual(["emitters.1.step"]);
+    expect(wrong).toEqual([{ field: "emitters.1.step", reason: "Needs more than 0." }]);
+    const error = { field: "emitters.1.step", reason: "no" };
+    expect([...errorsByPath([error], FORM, spec).keys()]).toEqual(["emitters.1.step"]);
   });
 });
 
@@ -168,7 +168,7 @@ describe("a choice with plug-ins", () => {
   it("has its settings checked only while it is selected", () => {
     const wrong = { fitness: "mine.straight", plugin: { settings: { strictness: 11 } } };
     expect(schemaErrors(form, { ...SPEC, task: wrong })).toEqual([
-      { field: "task.plugin.settings.strictness", message: "Needs at most 10." },
+      { field: "task.plugin.settings.strictness", reason: "Needs at most 10." },
     ]);
     expect(schemaErrors(form, { ...SPEC, task: { ...wrong, fitness: "displacement" } })).toEqual([]);
   });

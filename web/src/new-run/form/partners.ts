@@ -11,7 +11,7 @@ type Part = keyof typeof GROWN;
 
 const PARTNER: Record<Part, Part> = { body: "control", control: "body" };
 
-/** Why the form has changed the choice of a part. */
+/** The reason why the form has changed the choice of a part. */
 export interface Note {
   path: Part;
   /** The selected name. */

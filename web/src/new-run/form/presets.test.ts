@@ -3,7 +3,7 @@ import type { Json } from "../../api/types";
 import {
   schemaErrors,
   isOff,
-  messagesByPath,
+  errorsByPath,
   partOf,
   typed,
   typedJson,
@@ -66,7 +66,7 @@ describe("the form of a preset", () => {
     const form = formOf(schema);
     const paths = pathsOf(spec).filter((path) => path !== "experiment");
     for (const path of paths) {
-      const [place] = [...messagesByPath([{ field: path, message: "no" }], form, spec).keys()];
+      const [place] = [...errorsByPath([{ field: path, reason: "no" }], form, spec).keys()];
       expect(`${path}.`.startsWith(`${place}.`)).toBe(true);
       expect(place).not.toBe("");
     }

@@ -4,7 +4,7 @@ export const text = {
   essentials: {
     "body.nodes": ["Nodes", "Number of nodes: a longer body has more."],
     "world.viscosity": ["Viscosity", "Thick water has a high viscosity: small, slow swimmers live in it."],
-    "task.fitness": ["Fitness", "What the fittest do best."],
+    "task.fitness": ["Fitness", "The quantity that evolution maximises."],
     "archive.descriptors.0.name": [
       "First axis",
       "A measure: the archive keeps the best swimmer of each kind.",

@@ -1,13 +1,12 @@
 /** The formats in which a run can be downloaded, with columns in SI units if asked for. */
 
 import { useState } from "preact/hooks";
-import { exportUrl, type ExportFormat } from "../../api/exports";
+import { exportUrl, type ExportFormat } from "../../api/files";
 import { checkFile, downloadFile } from "../../api/files";
 import type { Run } from "../../api/types";
 import { hasArchive } from "../../store/fetch";
 import { showFailure } from "../../store/toasts";
-import { RealFields, useTyped } from "../../creature/real/RealFields";
-import { problemOf, realOf } from "../../creature/real/quantity";
+import { RealFields, useReal } from "../../creature/RealFields";
 import { text } from "./text";
 
 const TABLES: readonly ExportFormat[] = ["parquet", "arrow"];
@@ -18,16 +17,16 @@ const FORMATS = Object.keys(text.formats) as ExportFormat[];
 /** A server takes seconds for a large run: the format says so until its file comes. */
 export function ExportFormats({ run }: { run: Run }) {
   const [preparing, setPreparing] = useState<ExportFormat | null>(null);
-  const [typed, change] = useTyped();
+  const real = useReal(null);
   const archive = hasArchive(run);
   const waits = (format: ExportFormat) =>
-    preparing !== null || (archive && WITH_SI.includes(format) && problemOf(typed) !== null);
+    preparing !== null || (archive && WITH_SI.includes(format) && real.problem !== null);
   const download = async (format: ExportFormat) => {
     if (waits(format)) return;
     setPreparing(format);
     try {
-      const scaled = archive && WITH_SI.includes(format) && realOf(typed) !== null;
-      const url = exportUrl(run.id, format, scaled ? typed : null);
+      const scaled = archive && WITH_SI.includes(format) && real.typed.length !== "";
+      const url = exportUrl(run.id, format, scaled ? real.typed : null);
       await checkFile(url);
       await downloadFile(url);
     } catch (error) {
@@ -42,7 +41,7 @@ export function ExportFormats({ run }: { run: Run }) {
       {archive && (
         <fieldset class="real-units">
           <legend class="small">{text.real}</legend>
-          <RealFields typed={typed} onChange={change} />
+          <RealFields {...real} />
         </fieldset>
       )}
       <ul>

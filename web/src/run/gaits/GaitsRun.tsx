@@ -1,19 +1,21 @@
-/** Results of gaits: the displacement of each swimmer at each viscosity, for each coupling. */
+/** Results of gaits: the displacement of each swimmer against viscosity, for each coupling. */
 
 import { useMemo, useState } from "preact/hooks";
-import type { ResultRow } from "../../api/types";
+import type { ResultRow, Spec } from "../../api/types";
 import { setQuery } from "../../store/router";
 import { NotForceFree, couplingForm } from "../../ui/coupling";
-import { type Point, Plot } from "../../charts/plot/Plot";
-import { formsOf, reynoldsAxis, plotAxes, plotLines } from "./gaits";
+import { type Point, type Axis, type Line, Plot } from "../../charts/plot/Plot";
 import { Card } from "../../ui/Page";
 import { Segments } from "../../ui/Select";
-import { ReplayLoop } from "../../replay/ReplayLoop";
+import { LoopPlayer } from "../../replay/LoopPlayer";
 import { ReplayStatus, useReplays } from "../../replay/replays";
 import { useDebounced } from "../../store/polling";
 import { type ResultsProps, TableCard, hrefOf, useResultsTable } from "../results/ResultsTable";
 import { text } from "./text";
 import "./gaits.css";
+import { number, percent, words } from "../../ui/format";
+import type { TopAxis } from "../../charts/plot/Frame";
+import { fromZero, logAround } from "../../charts/plot/scale";
 
 /** Delay before a mark counts as chosen, so that a moving pointer requests no replays. */
 const SETTLE_MS = 120;
@@ -133,7 +135,7 @@ function MarkPlayer({ point }: { point: Point }) {
   return (
     <>
       <ReplayStatus {...rendering} what={text.simulating} />
-      {replay && <ReplayLoop replay={replay} name={text.swimming(name)} />}
+      {replay && <LoopPlayer replay={replay} bare={text.swimming(name)} />}
       <p class="small">
         <b>{name}</b>
         <br />
@@ -146,3 +148,74 @@ function MarkPlayer({ point }: { point: Point }) {
 }
 
 const shaOf = (href: string) => href.split("/").at(-1)!.split("?")[0]!;
+
+/** In the order of the paper, so that each swimmer has the same colour in every run. */
+const SWIMMERS = ["worm", "tadpole", "ray", "cilia", "jellyfish"];
+
+type Href = (creature: string) => string;
+
+const strings = (value: unknown) => (Array.isArray(value) ? value.map(String) : []);
+const measure = (row: ResultRow, name: string) =>
+  typeof row[name] === "number" ? (row[name] as number) : null;
+
+const formsOf = (spec: Spec) => strings(spec.forms);
+
+/** Common axes of several forms make them comparable. */
+export function plotAxes(spec: Spec, rows: readonly ResultRow[]): { x: Axis; y: Axis } {
+  const displacements = rows.filter(finished).map((row) => Number(row.displacement));
+  const format = (value: number) => number(value, 2);
+  return {
+    x: { title: text.viscosity, scale: logAround(strings(spec.viscosities).map(Number)), format },
+    y: { title: text.displacement, scale: fromZero(displacements), format },
+  };
+}
+
+export function plotLines(spec: Spec, rows: readonly ResultRow[], hrefOf: Href): Line[] {
+  return strings(spec.swimmers).map((swimmer) => ({
+    name: swimmer,
+    colour: `--series-${1 + Math.max(0, SWIMMERS.indexOf(swimmer))}`,
+    points: rows
+      .filter((row) => row.swimmer === swimmer)
+      .map((row) => pointOf(row, hrefOf))
+      .sort((a, b) => a.x - b.x),
+  }));
+}
+
+/** True if the simulation completed, so that its figures count. */
+const finished = (row: ResultRow) => row.status === "ok" && measure(row, "displacement") !== null;
+
+/** True if warnings or active limits make a point doubtful. */
+const doubtful = (row: ResultRow) => Number(row.limited) > 0 || Boolean(row.warnings);
+
+function warningsOf(row: ResultRow): string[] {
+  if (row.warnings) return [String(row.warnings)];
+  return doubtful(row) ? [text.limited(percent(Number(row.limited)))] : [];
+}
+
+function pointOf(row: ResultRow, hrefOf: Href): Point {
+  const displacement = finished(row) ? measure(row, "displacement") : null;
+  const figures = [
+    displacement === null ? words(String(row.status)) : text.cellsPerCycle(number(displacement)),
+    text.reynolds(number(measure(row, "reynolds"))),
+    ...warningsOf(row),
+  ];
+  return {
+    x: Number(row.viscosity),
+    y: displacement,
+    hollow: doubtful(row),
+    ...(row.creature && { href: hrefOf(row.creature) }),
+    tooltip: [text.mark(words(String(row.swimmer)), number(Number(row.viscosity))), ...figures],
+  };
+}
+
+/** The Reynolds numbers of the first swimmer that completed, above its viscosities. */
+export function reynoldsAxis(rows: readonly ResultRow[]): TopAxis | null {
+  const known = rows.filter((row) => finished(row) && Number(row.reynolds) > 0);
+  const swimmer = SWIMMERS.find((name) => known.some((row) => row.swimmer === name));
+  if (!swimmer) return null;
+  const ofSwimmer = known.filter((row) => row.swimmer === swimmer);
+  const ticks = ofSwimmer
+    .map((row) => ({ at: Number(row.viscosity), text: number(Number(row.reynolds), 2) }))
+    .sort((a, b) => a.at - b.at);
+  return { title: text.reynoldsOf(swimmer), ticks };
+}

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { ResultRow, Spec } from "../../api/types";
-import { reynoldsAxis, plotAxes, plotLines } from "./gaits";
+import { reynoldsAxis, plotAxes, plotLines } from "./GaitsRun";
 
 const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
 

@@ -4,10 +4,11 @@ import { useMemo } from "preact/hooks";
 import type { ResultRow, Run } from "../../api/types";
 import { Plot, type Axis, type Line, type PlotProps } from "../../charts/plot/Plot";
 import { fromZero, logAround } from "../../charts/plot/scale";
-import { newPlayhead } from "../../replay/playhead";
+import { newPlayhead } from "../../replay/clock";
 import { ReplayPlayer } from "../../replay/ReplayPlayer";
 import { ReplayStatus, useReplays } from "../../replay/replays";
 import type { Curves } from "../../store/curves";
+import { keyOf } from "../../store/figureNames";
 import { useStore } from "../../store/store";
 import { Card } from "../../ui/Page";
 import { number, shortId, count } from "../../ui/format";
@@ -84,7 +85,6 @@ function CreatureLink({ run, row, title }: { run: Run; row: ResultRow; title: st
 
 /** The largest number of marks on a line. */
 const MAX_MARKS = 120;
-const LOSS = "loss of ";
 
 /** The loss of each filament, or the fitness of a creature, by step. */
 export function learningCurveOf(run: Run, curves: Curves): PlotProps {
@@ -92,7 +92,7 @@ export function learningCurveOf(run: Run, curves: Curves): PlotProps {
   // A refinement measures its creature before the first step.
   const before = folds ? 0 : 1;
   const names = Object.keys(curves.summary).filter((name) =>
-    folds ? name.startsWith(LOSS) : name === "fitness",
+    folds ? keyOf("loss.*", name) !== null : name === "fitness",
   );
   const lines = names.map((name, k) => lineOf(name, curves, before, k));
   const values = lines.flatMap(({ points }) => points.map(({ y }) => y ?? 0));
@@ -109,7 +109,7 @@ export function learningCurveOf(run: Run, curves: Curves): PlotProps {
 }
 
 function lineOf(column: string, curves: Curves, before: number, k: number): Line {
-  const [name, values] = [column.replace(LOSS, ""), curves.summary[column]!];
+  const [name, values] = [keyOf("loss.*", column) ?? column, curves.summary[column]!];
   const step = (i: number) => curves.generation[i]! - before;
   const every = Math.max(1, Math.ceil(values.length / MAX_MARKS));
   const marked = values.map((_, i) => i).filter((i) => i % every === 0 || i === values.length - 1);

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { NO_CURVES } from "../../store/curves";
 import type { Run } from "../../api/types";
 import { ticksOf } from "../../charts/plot/scale";
-import { pictureBox } from "./FoldPlayer";
+import { pictureBox } from "./FoldsCard";
 import { learningCurveOf } from "./LearningRun";
 
 describe("a curve", () => {
@@ -18,8 +18,8 @@ describe("a curve", () => {
 
   it("has a line for each picture that a filament folds into", () => {
     const losses = {
-      "loss of 3": [0.1, 0.05, 0.02],
-      "loss of 7": [0.1, 0.04, 0.01],
+      "loss.3": [0.1, 0.05, 0.02],
+      "loss.7": [0.1, 0.04, 0.01],
       loss: [0.1, 0.045, 0.015],
     };
     const { lines } = learningCurveOf(run("folding"), curves(losses));

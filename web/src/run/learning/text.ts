@@ -1,8 +1,6 @@
 /** Texts of folding and refinement runs. */
 
 export const text = {
-  pause: "Pause",
-  play: "Play",
   picture: "Picture",
   filamentFor: (target: string) => `The filament for ${target} over its picture`,
   moments: "Moments of the simulation",

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { colourOf, extentOf, pathOf, speciesAt, stackOf } from "./speciesStack";
+import { colourOf, extentOf, pathOf, speciesAt, stackOf } from "./SpeciesPlot";
 
 describe("species over time", () => {
   const history = { generation: [1, 2, 3], number: [[0], [0, 2], [2]], members: [[8], [5, 3], [8]] };

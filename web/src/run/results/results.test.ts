@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { ResultRow } from "../../api/types";
-import { columnsOf, sortRows } from "./columns";
+import { columnsOf, sortRows } from "./ResultsTable";
 
 const row = (values: Partial<ResultRow>): ResultRow => ({ creature: null, ...values });
 

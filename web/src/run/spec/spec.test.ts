@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Preset } from "../../api/types";
 import { differences, groupsOf, valueText } from "./difference";
-import { brief, nameOf, nearestPreset, sectionsOf } from "./sections";
+import { brief, nameOf, nearestPreset, sectionsOf } from "./SpecCard";
 
 describe("the sections of a spec", () => {
   const spec = { seed: 7, search: { batch: 64, stop: null }, axes: [{ name: "a" }], world: { width: 32 } };

@@ -1,0 +1,1 @@
+"""Measures that a spec names, one in each file; JAX is imported when they are computed."""

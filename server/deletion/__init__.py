@@ -1,1 +1,0 @@
-"""Deletion: the bin, purging, and garbage collection."""

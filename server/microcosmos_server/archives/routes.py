@@ -1,0 +1,188 @@
+"""Routes of results: the archive or the table of a run, as columns and as files."""
+
+import csv
+import io
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import Response
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from microcosmos.archive import export, poses
+
+from ..attempts.checkpoints import last_checkpoint
+from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccess, ShareAccessDep
+from ..core.api import named, sends
+from ..core.errors import NotFound, invalid_field
+from ..runs.deps import RunDep
+from ..services.services import ServicesDep, SessionDep
+from ..storage import ranges, segments
+from ..tables import Artifact, Result, Run
+from . import elites, reading
+from . import measures as recorded_measures
+from .archive_of_request import ShownArchiveDep, archive_answers, refuse_table
+from .schemas import ArchiveRead, CentroidsRead, HistoryRead, ReprojectionRead, ResultsRead
+
+router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
+BINARY = sends("application/octet-stream", {404: {}})
+
+# About 10 MB.
+POSE_CELLS = 1000
+
+
+@router.get("/archive", **archive_answers(ArchiveRead), dependencies=[MAY_READ_SHARED])
+async def read_archive(
+    shown: ShownArchiveDep,
+    generation: Annotated[int | None, Query(ge=0)] = None,
+    measures: str = "",
+    after: Annotated[int | None, Query(ge=0)] = None,
+) -> Response:
+    """Return the elite of each cell, now or as of a generation.
+
+    `measures` names recorded measures, separated by commas, to return with the elites. With
+    `after`, a generation, only the elites that entered later are returned, and only the cells
+    that were emptied later.
+    """
+    asked = (shown.services, shown.run, shown.file, generation, after, measures)
+    return await shown.answer(lambda session: reading.archive(session, *asked))
+
+
+@router.get("/archive/history", **archive_answers(HistoryRead), dependencies=[MAY_READ_SHARED])
+async def read_history(shown: ShownArchiveDep, measures: str = "") -> Response:
+    """Return every elite that ever entered, and every cell that lost one without a new one.
+
+    Each generation's archive follows from them.
+    """
+    asked = (shown.services, shown.run, shown.file, measures)
+    return await shown.answer(lambda session: reading.history(session, *asked))
+
+
+@router.get(
+    "/archive/reprojection",
+    **archive_answers(ReprojectionRead),
+    dependencies=[MAY_READ_SHARED],
+)
+async def read_reprojection(
+    shown: ShownArchiveDep, axes: Annotated[str, Query(min_length=1)], measures: str = ""
+) -> Response:
+    """Return the archive of all creatures that ever entered, over any other axes.
+
+    `axes` are measures, `fitness`, or principal components of all measures (`pc1` to `pc9`),
+    separated by commas. An axis of the archive keeps its ends and bins; any other has the
+    default ends of its measure and 24 bins. `measures` names further columns to return.
+    """
+    asked = (shown.run, axes, measures)
+    return await shown.answer(lambda session: reading.reprojected(session, *asked))
+
+
+@router.get("/archive/poses", **BINARY, dependencies=[MAY_READ_SHARED])
+def read_poses(
+    run: RunDep,
+    session: SessionDep,
+    cells: Annotated[str, Query(pattern=r"^\d{1,9}(,\d{1,9})*$")],
+    generation: Annotated[int | None, Query(ge=0)] = None,
+) -> Response:
+    """Return the pose streams of the elites of some cells, now or as of a generation.
+
+    `cells` are numbers, separated by commas. The length of each stream precedes it, as a
+    little-endian uint32. Elites without a stream are left out.
+    """
+    refuse_table(run)
+    numbers = sorted({int(cell) for cell in cells.split(",")})
+    if len(numbers) > POSE_CELLS:
+        raise invalid_field("cells", f"at most {POSE_CELLS:,} cells", f"{len(numbers):,}")
+    as_of = elites.generation_of(run, generation)
+    found = session.scalars(elites.poses(run, as_of, numbers))
+    return Response(poses.batch(found), media_type="application/octet-stream")
+
+
+@router.get("/archive/centroids", dependencies=[MAY_READ_SHARED])
+def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
+    """Return the centroids of a CVT archive; null before its first checkpoint."""
+    refuse_table(run)
+    if recorded_measures.kind(run)[0] != "cvt":
+        detail = "The archive has no Voronoi cells, and so no centroids."
+        raise NotFound(detail, title="No centroids")
+    first = last_checkpoint(session, run.id)
+    if first is None:
+        return CentroidsRead(centroids=None)
+    found = export.centroids(segments.read(services.artifacts, first))
+    return CentroidsRead(centroids=found.tolist())
+
+
+@router.get("/archive.h5", **BINARY, dependencies=[MAY_READ_SHARED])
+def download_archive(
+    request: Request,
+    run: RunDep,
+    share: ShareAccessDep,
+    session: SessionDep,
+    services: ServicesDep,
+) -> Response:
+    """Return the file of the last checkpoint; it contains the archive or the table."""
+    artifact = _file(session, run, share)
+    return ranges.file(request, services.artifacts, artifact, attachment(run, "h5"))
+
+
+@router.get("/archive.csv", **sends("text/csv"), dependencies=[MAY_READ_SHARED])
+def download_archive_csv(
+    run: RunDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
+) -> Response:
+    """Return the archive of the last checkpoint in the columns of pyribs."""
+    refuse_table(run)
+    artifact = _file(session, run, share)
+    text = export.csv(segments.read(services.artifacts, artifact))
+    return Response(text, headers=attachment(run, "csv"), media_type="text/csv")
+
+
+def _file(session: Session, run: Run, share: ShareAccess | None) -> Artifact:
+    """Return the file of a share, else the last checkpoint; raise `DomainError` without it."""
+    if share:
+        if (shared := share.archive(session)) is None:
+            detail = (
+                f"The share has no file of generation {run.generation}; its elites are shown."
+            )
+            raise NotFound(detail, title="No file")
+        return shared
+    artifact = last_checkpoint(session, run.id)
+    if artifact is None:
+        detail = f"Run {run.id} has no checkpoint yet; it is {run.status}."
+        raise NotFound(detail, title="No checkpoint yet")
+    return artifact
+
+
+def attachment(run: Run, ending: str) -> dict[str, str]:
+    kind = "archive" if recorded_measures.has_archive(run) else run.experiment
+    return named(f"{kind}-{str(run.id)[:8]}.{ending}")
+
+
+@router.get("/results", dependencies=[MAY_READ])
+def read_results(run: RunDep, session: SessionDep) -> ResultsRead:
+    """Return all rows so far, in the order in which they were measured."""
+    return ResultsRead(generation=run.generation, summary=run.summary, rows=_rows(session, run))
+
+
+@router.get("/results.csv", **sends("text/csv"), dependencies=[MAY_READ])
+def download_results(run: RunDep, session: SessionDep) -> Response:
+    """Return the rows as CSV."""
+    if recorded_measures.has_archive(run):
+        detail = (
+            f"A run of `{run.experiment}` has no table; its result is the archive at "
+            f"/api/v1/runs/{run.id}/archive."
+        )
+        raise NotFound(detail, title="No table")
+    rows = _rows(session, run)
+    if not rows:
+        detail = f"Run {run.id} has no results yet; it is {run.status}."
+        raise NotFound(detail, title="No results yet")
+    columns = list(dict.fromkeys(name for row in rows for name in row if name != "creature"))
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [*columns, "creature"], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return Response(text.getvalue(), headers=attachment(run, "csv"), media_type="text/csv")
+
+
+def _rows(session: Session, run: Run) -> list[dict[str, Any]]:
+    mine = select(Result).where(Result.run_id == run.id).order_by(Result.number)
+    return [{**row.values, "creature": row.creature} for row in session.scalars(mine)]

@@ -1,0 +1,1 @@
+"""Deletion: purge runs, collect garbage, and forget what the settings no longer keep."""

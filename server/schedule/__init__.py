@@ -1,1 +1,0 @@
-"""Which queued run a worker carries out next. SQL decides; Redis only wakes idle workers."""

@@ -1,0 +1,116 @@
+"""Plug-ins of a worker: list them in a separate process, and load them in jobs.
+
+Importing a module may load JAX, which the supervisor must not, or end the process.
+`python -m microcosmos_worker.plugins` prints the list as JSON.
+"""
+
+import json
+import logging
+import os
+import sys
+import threading
+from collections.abc import Sequence
+from contextlib import redirect_stdout, suppress
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any
+
+from microcosmos import plugins
+from microcosmos.plugins.loading import GROUP
+from microcosmos_server.core import processes
+from microcosmos_server.settings import Settings
+
+IMPORT_SECONDS = 120.0
+
+log = logging.getLogger(__name__)
+
+
+def files(settings: Settings) -> list[Path]:
+    return [Path(part) for part in settings.modules.split(os.pathsep) if part]
+
+
+def load(settings: Settings) -> Sequence[plugins.FailedModule]:
+    """Load all plug-ins; log and return those that fail."""
+    failed = plugins.load_all(files(settings))
+    for one in failed:
+        log.warning("%s is not loaded: %s", one.module, one.reason)
+    return failed
+
+
+@dataclass(frozen=True)
+class PluginReport:
+    """Declarations of the loaded plug-ins, and modules that failed with their reasons."""
+
+    plugins: tuple[dict[str, Any], ...] = ()
+    unloaded: tuple[dict[str, Any], ...] = ()
+
+    @property
+    def plugin_versions(self) -> set[str]:
+        return {one["source"] for one in self.plugins}
+
+
+def list_plugins(settings: Settings) -> PluginReport:
+    """Load all plug-ins in another process, which does not touch a GPU."""
+    named = [str(file) for file in files(settings)]
+    if not named and not entry_points(group=GROUP):
+        return PluginReport()
+    command = processes.python("microcosmos_worker.plugins")
+    environment = os.environ | {"JAX_PLATFORMS": "cpu"}
+    try:
+        # Its errors go to the worker's log.
+        done = processes.run(command, environment, stderr=None, seconds=IMPORT_SECONDS)
+        if done.code == 0:
+            return PluginReport(**json.loads(done.output.splitlines()[-1]))
+        reason = f"the process that imported it {processes.exit_reason(done.code)}"
+    except processes.TooLateError:
+        reason = f"it was not imported within {IMPORT_SECONDS:g} s"
+    except (ValueError, IndexError) as error:
+        reason = f"the process that imported it printed no list ({error})"
+    log.warning("No plug-ins: %s", reason)
+    return PluginReport(unloaded=tuple({"module": one, "reason": reason} for one in named))
+
+
+class PluginWatcher(threading.Thread):
+    """Keeps a `report` of the plug-ins, renewed when a file changes."""
+
+    def __init__(self, settings: Settings, interval: float):
+        super().__init__(name="plug-ins", daemon=True)
+        self._settings, self._interval = settings, interval
+        self._ended = threading.Event()
+        self._digests = self._read_digests()
+        self.report = list_plugins(settings)
+
+    def run(self) -> None:
+        while files(self._settings) and not self._ended.wait(self._interval):
+            if (now := self._read_digests()) != self._digests:
+                self._digests, self.report = now, list_plugins(self._settings)
+
+    def end(self) -> None:
+        self._ended.set()
+
+    def _read_digests(self) -> tuple[str | None, ...]:
+        return tuple(map(_digest, files(self._settings)))
+
+
+def _digest(file: Path) -> str | None:
+    with suppress(OSError):
+        return sha256(file.read_bytes()).hexdigest()
+    return None
+
+
+def main() -> None:
+    """Print the list in the last line, whatever modules print."""
+    processes.end_with_parent()
+    with redirect_stdout(sys.stderr):
+        failed = load(Settings())
+    found = {
+        "plugins": [one.declaration.model_dump(mode="json") for one in plugins.loaded()],
+        "unloaded": [vars(one) for one in failed],
+    }
+    print(f"\n{json.dumps(found)}")
+
+
+if __name__ == "__main__":
+    main()
