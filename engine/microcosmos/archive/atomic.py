@@ -35,7 +35,7 @@ def write_whole(path: Path, data: bytes) -> None:
     except BaseException as error:  # Ctrl-C too.
         with suppress(OSError):
             beside.unlink()
-        if isinstance(error, OSError):
+        if isinstance(error, OSError) and error.errno is not None:
             raise _renamed(error, path) from error
         raise
     sync_folder(path.parent)
@@ -114,7 +114,7 @@ def folder_part(path: Path) -> Iterator[Path]:
 
 
 def _renamed(error: OSError, path: Path) -> OSError:
-    """Return an error with the name that people know, in place of a part's."""
+    """Return an error of the system with the name that people know, in place of a part's."""
     return OSError(error.errno, error.strerror, str(path))
 
 
