@@ -10,8 +10,14 @@ NEEDED = {
     "extra_forbidden": "no field of this name",
     "uuid_parsing": "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427",
     "uuid_type": "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427",
+    "too_short": "{min_length} or more items",
+    "too_long": "{max_length} or fewer items",
+    "string_too_short": "{min_length} or more characters",
+    "string_too_long": "{max_length} or fewer characters",
+    "string_pattern_mismatch": "a text that matches {pattern}",
 }
-"""Needed values, by types of pydantic's errors whose messages do not state them."""
+"""Needed values, by types of pydantic's errors whose messages do not state them, or begin with
+the name of a type; in braces are names of the error's context."""
 
 
 class InvalidField(ValueError):
@@ -48,11 +54,15 @@ class InvalidField(ValueError):
 def invalid_field(error: Mapping[str, Any], path: str) -> InvalidField:
     """Return one of the `errors()` of a pydantic model, which is about the part at a path."""
     kind = error["type"]
-    match error.get("ctx", {}).get("error"):
+    context = error.get("ctx", {})
+    match context.get("error"):
         case InvalidField() as ours:
             return ours.within(path)
         case ValueError() as ours:
             return InvalidField(path, str(ours))
-    needed = NEEDED.get(kind, str(error["msg"]).removeprefix(PREFIX))
+    if kind in NEEDED:
+        needed = NEEDED[kind].format_map(context)
+    else:
+        needed = str(error["msg"]).removeprefix(PREFIX)
     got = "nothing" if kind == "missing" else error["input"]
     return InvalidField(path, f"needs {needed}; got {got!r:.120}", needed=needed, got=got)

@@ -3,9 +3,10 @@
 import ast
 import pickle
 from pathlib import Path
+from typing import Annotated
 
 import pytest
-from pydantic import ValidationError
+from pydantic import BaseModel, Field, ValidationError
 
 from microcosmos.archive.report import ENDED, FIGURES, SPECIES, curves_of, figure
 from microcosmos.invalid import InvalidField
@@ -37,6 +38,24 @@ def test_an_error_of_a_field_and_one_between_fields_are_told_alike():
 
 def test_an_unknown_name_of_a_part_is_told_at_the_field_that_names_it():
     assert errors(DEMO | {"body": {"builder": "snake"}})[0].field == "body.builder"
+
+
+def test_a_length_is_told_in_items_and_characters():
+    class Named(BaseModel):
+        few: Annotated[list[int], Field(min_length=2, max_length=3)] = [1, 2]
+        name: Annotated[str, Field(min_length=2, max_length=3, pattern="^a{2}")] = "aa"
+
+    for sent, reason in (
+        ({"few": [1]}, "needs 2 or more items; got [1]"),
+        ({"few": [1] * 4}, "needs 3 or fewer items; got [1, 1, 1, 1]"),
+        ({"name": "a"}, "needs 2 or more characters; got 'a'"),
+        ({"name": "aaaa"}, "needs 3 or fewer characters; got 'aaaa'"),
+        ({"name": "bbb"}, "needs a text that matches ^a{2}; got 'bbb'"),
+    ):
+        with pytest.raises(ValidationError) as refused:
+            Named(**sent)
+        (error,) = invalid_fields(refused.value.errors())
+        assert error.reason == reason
 
 
 def test_a_bound_is_a_number_that_the_field_accepts():

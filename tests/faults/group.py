@@ -11,18 +11,24 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import urlsplit
 
+import httpx
 import psycopg
 import record
 import redis
 import rich
 from databases import POSTGRES, Missing, service_settings
 from drive import ROOT, SHORT, Installation, kill_job, running, wait_until
+from relay import Relay
 from small_spec import SMALL_SCENE
+from sqlalchemy import make_url
 from webhook import SECRET, Receiver
+
+from microcosmos_server.core.database import SILENT_SECONDS
 
 FAKETIME = sorted(Path("/usr/lib").glob("*/faketime/libfaketime.so.1"))
 
@@ -56,7 +62,7 @@ class Hosts:
     """The workers of an installation, each as if it had a machine of its own."""
 
     def __init__(self, product: Installation):
-        (server,) = product.named("microcosmos_server.main")
+        server, *_ = product.named("microcosmos_server.main")
         self.environment = server.environ() | {"WORKERS": "1"}
         self.processes: list[subprocess.Popen[bytes]] = []
 
@@ -123,7 +129,7 @@ def no_store(product: Installation) -> Iterator[None]:
 
 
 def flush(product: Installation) -> None:
-    (server,) = product.named("microcosmos_server.main")
+    server, *_ = product.named("microcosmos_server.main")
     with redis.Redis.from_url(server.environ()["MICROCOSMOS_REDIS_URL"]) as client:
         client.flushdb()
 
@@ -141,13 +147,47 @@ def frozen_redis(product: Installation) -> Iterator[bool]:
             one.resume()
 
 
+def frozen_database(product: Installation, database: Relay, seconds: float) -> Iterator[str]:
+    """Let nothing through to PostgreSQL for a while, and yield what should not follow."""
+    slowest, until = 0.0, time.monotonic() + seconds
+    database.going.clear()
+    try:
+        while time.monotonic() < until:
+            began = time.monotonic()
+            product.http.get("/healthz").raise_for_status()
+            slowest = max(slowest, time.monotonic() - began)
+            time.sleep(1.0)
+    finally:
+        database.going.set()
+    began = time.monotonic()
+    wait_until(lambda: answers(product), 120, "the database is used again")
+    back = time.monotonic() - began
+    say(f"database frozen {seconds:g} s: slowest answer {slowest:.2f} s, back in {back:.1f} s")
+    if slowest > FROZEN_SECONDS:
+        yield f"the server was silent for {slowest:.1f} s while the database was frozen"
+    if back > FROZEN_SECONDS:
+        yield f"the server needed {back:.1f} s once the database went on"
+
+
+def answers(product: Installation) -> bool:
+    with suppress(httpx.HTTPError):
+        return product.http.get("/api/v1/runs", timeout=5).status_code == 200
+    return False
+
+
 def silences(product: Installation, runs: list[str]) -> int:
     """Count the attempts that ended because their worker did not report."""
     logs = [product.get(f"runs/{run}/log")["entries"] for run in runs]
     return sum("has not reported for" in one["text"] for log in logs for one in log)
 
 
-def disturb(product: Installation, hosts: Hosts, size: Drill, runs: list[str]) -> Iterator[str]:
+def disturb(
+    product: Installation,
+    hosts: Hosts,
+    size: Drill,
+    runs: list[str],
+    database: Relay | None,
+) -> Iterator[str]:
     """Do everything that goes wrong in a bad night, and yield what should not follow."""
     kill_job(product, "")
     say("jobs killed")
@@ -165,6 +205,8 @@ def disturb(product: Installation, hosts: Hosts, size: Drill, runs: list[str]) -
     with no_database(product):
         time.sleep(size.outage)
     say(f"{size.outage:g} s without the database")
+    if database:
+        yield from frozen_database(product, database, SILENT_SECONDS + size.outage)
     time.sleep(HEARTBEATS)
     if after := silences(product, runs) - before:
         yield f"the database was away, and {after} attempts failed for it"
@@ -185,7 +227,8 @@ def disturb(product: Installation, hosts: Hosts, size: Drill, runs: list[str]) -
 HEARTBEATS = 3.0
 """Seconds in which the reconciler takes several passes after an outage."""
 FROZEN_SECONDS = 10.0
-"""Most seconds for ten changes while Redis is frozen, on a busy machine."""
+"""Most seconds, on a busy machine, for ten changes while Redis is frozen, for an answer without
+the database while that is frozen, and for one with it afterwards."""
 
 
 def say(what: str) -> None:
@@ -202,10 +245,13 @@ def queue_others(product: Installation, size: Drill) -> None:
         answer.raise_for_status()
 
 
-def drill(product: Installation, size: Drill, told: Receiver) -> list[str]:
+def drill(
+    product: Installation, size: Drill, told: Receiver, database: Relay | None = None
+) -> list[str]:
     """Carry out a drill, and return what is wrong in its record.
 
-    `told` receives what the installation tells about its runs.
+    `told` receives what the installation tells about its runs; the installation reaches a
+    PostgreSQL through `database`.
     """
     hosts = Hosts(product)
     try:
@@ -232,7 +278,7 @@ def drill(product: Installation, size: Drill, told: Receiver) -> list[str]:
         for _ in range(size.hosts - 4):
             hosts.start()
         wait_until(lambda: is_under_way(product), 300, "runs are computed", every=0.3)
-        wrong = list(disturb(product, hosts, size, [run for run, _ in runs]))
+        wrong = list(disturb(product, hosts, size, [run for run, _ in runs], database))
         wait_finished(product, [run for run, _ in runs], size.patience)
         if not FAKETIME:
             rich.print("  NOT SHOWN: a host with a wrong clock: no libfaketime on this machine")
@@ -270,6 +316,19 @@ def telling(url: str) -> dict[str, str]:
     return {"MICROCOSMOS_WEBHOOK_URL": url, "MICROCOSMOS_WEBHOOK_SECRET": SECRET}
 
 
+@contextmanager
+def relayed(settings: dict[str, str]) -> Iterator[Relay]:
+    """Put a relay before the PostgreSQL of settings, which name the relay then."""
+    url = make_url(settings["MICROCOSMOS_DATABASE_URL"])
+    relay = Relay(f"http://{url.host}:{url.port or 5432}")
+    through = url.set(host="127.0.0.1", port=urlsplit(relay.url).port)
+    settings["MICROCOSMOS_DATABASE_URL"] = through.render_as_string(hide_password=False)
+    try:
+        yield relay
+    finally:
+        relay.close()
+
+
 def group(_: Installation) -> bool:
     """Tell whether a group's runs survive a bad night, on both stacks."""
     good = []
@@ -280,15 +339,20 @@ def group(_: Installation) -> bool:
         except Missing as missing:
             rich.print(f"NOT SHOWN: {missing}")
             return False
-        for name, services in (("SQLite", {}), ("PostgreSQL and a Redis server", elsewhere)):
+        database = stack.enter_context(relayed(elsewhere))
+        for name, services, relay in (
+            ("SQLite", {}, None),
+            ("PostgreSQL and a Redis server", elsewhere, database),
+        ):
             rich.print(f"group drill on {name}: {FULL}")
             settings = SHORT | {"MICROCOSMOS_LEASE": "20", "WORKERS": "0"} | services
+            settings["SERVERS"] = "3"
             receiver = Receiver()
             with (
                 receiver.serve() as url,
                 running(folder / name, settings | telling(url)) as product,
             ):
-                wrong = drill(product, FULL, receiver)
+                wrong = drill(product, FULL, receiver, relay)
             print(*wrong, sep="\n")
             good.append(not wrong)
     return all(good)

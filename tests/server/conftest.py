@@ -14,7 +14,7 @@ import httpx
 import pytest
 import reports
 from databases import Missing, own_postgresql, own_redis
-from installation import Installation, empty_redis, running
+from installation import GREEDY, Installation, empty_redis, running
 from object_store import CREDENTIALS, Proxy, own_object_store
 from queueing import alive, reason, taken, waiting  # noqa: F401  (fixtures)
 from real_server import started
@@ -101,6 +101,15 @@ def installations(tmp_path_factory, redis_url) -> Iterator[Callable[[str], Insta
             return Installation(settings, stack)
 
         yield install
+
+
+@pytest.fixture(autouse=True)
+def _one_connection_at_a_time() -> Iterator[None]:
+    """Whatever a test asks for, the server holds one connection at a time to answer it."""
+    yield
+    found = GREEDY.found.copy()
+    GREEDY.found.clear()
+    assert not found, f"a request held two connections:\n{found[0]}"
 
 
 @pytest.fixture

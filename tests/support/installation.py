@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import uvicorn
+from connections import Greedy, Marked
 from sqlalchemy import update
 
 from microcosmos_server.app import create_app
@@ -16,6 +17,9 @@ from microcosmos_server.services.services import Services, connect
 from microcosmos_server.settings import Settings
 from microcosmos_server.storage import mark
 from microcosmos_server.tables import Base, InstallationState, migrations
+
+GREEDY = Greedy()
+"""What requests of all servers of these tests may not be."""
 
 
 class Installation:
@@ -65,8 +69,12 @@ def empty_redis(services: Services) -> None:
 @contextmanager
 def running(settings: Settings) -> Iterator[str]:
     """Run a server in a thread; yield its address."""
-    app = create_app(connect(settings))
-    config = uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=5)
+    services = connect(settings)
+    GREEDY.watch(services.sessions.engine)
+    app = create_app(services)
+    config = uvicorn.Config(
+        Marked(app), port=0, log_level="warning", timeout_graceful_shutdown=5
+    )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
     thread.start()

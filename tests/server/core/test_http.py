@@ -5,6 +5,7 @@ import socket
 import threading
 import time
 from contextlib import closing, contextmanager, suppress
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import ClassVar
 from urllib.parse import urlsplit
@@ -223,12 +224,16 @@ def test_a_slow_body_that_goes_on_and_a_second_request_are_answered(impatient):
     head = START + b"Connection: close\r\nContent-Length: 6002\r\n\r\n{"
     parts = [body[k : k + 1000] for k in range(0, 6000, 1000)]
     assert b"422" in send(impatient, head, *parts, b"}", pause=0.25).split(b"\r\n")[0]
-    request = b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n"
     place = urlsplit(impatient)
-    with closing(socket.create_connection((place.hostname, place.port), timeout=20)) as opened:
-        for end in (b"", b"", b"Connection: close\r\n"):  # One connection, with pauses.
-            opened.sendall(request + end + b"\r\n")
-            assert opened.recv(1 << 16).startswith(b"HTTP/1.1 200 ")
+    with closing(HTTPConnection(place.hostname, place.port, timeout=20)) as connection:
+        connection.connect()
+        opened = connection.sock
+        for _ in range(3):  # One connection, with pauses.
+            connection.request("GET", "/healthz")
+            answer = connection.getresponse()
+            assert answer.status == 200
+            answer.read()
+            assert connection.sock is opened
             time.sleep(0.8)  # Longer than the deadline of a head: between requests none counts.
 
 

@@ -60,7 +60,7 @@ def test_a_path_reaches_into_lists_whole_parts_and_parts_that_are_off(api, post)
         ({"grid": {"seed": [1]}}, "grid.seed", "`seeds`"),
         ({"grid": {"experiment": ["folding"]}}, "grid.experiment", "cannot contain"),
         ({"grid": {"seed.low": [1]}}, "grid.seed.low", "no field"),
-        ({"grid": {"world.viscosity": []}}, "grid.world.viscosity", "at least 1 item"),
+        ({"grid": {"world.viscosity": []}}, "grid.world.viscosity", "1 or more items"),
         ({"grid": {"world.viscosity": [1, 1.0]}}, "grid.world.viscosity[1]", "viscosity[0]"),
         ({"grid": {"world": [{}], "world.width": [64]}}, "grid.world.width", "lies in `world`"),
         ({"grid": {"body.nodes": [8, 512]}}, "grid.body.nodes[1]", "with body.nodes=512"),
