@@ -20,15 +20,22 @@ unexport PYTHONDONTWRITEBYTECODE
 run: install web
 	@$(BIN)/python -m microcosmos_server.local
 
+# uv installs in a third of pip's time. It reads no settings of pip: where these name another
+# registry, which uv does not find, pip installs.
+fetch = $(BIN)/uv pip install -q --python $(BIN)/python --compile-bytecode --require-hashes $(1) \
+	|| $(PIP) --require-hashes $(1)
+PIP = $(BIN)/python -m pip install -q --disable-pip-version-check
+
 install: $(INSTALLED) $(KERNEL)
 
-$(INSTALLED): $(LOCK) requirements-node.lock pyproject.toml
+$(INSTALLED): $(LOCK) requirements-uv.lock requirements-node.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 13) else f"Microcosmos needs Python 3.11 or 3.12, got {v[0]}.{v[1]}: make PYTHON=python3.12")'
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "Installing from $(LOCK) into $(VENV) ..."
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r $(LOCK)
-	@command -v npm >/dev/null || $(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-node.lock
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-build-isolation --no-deps -e .
+	@$(PIP) --require-hashes -r requirements-uv.lock
+	@$(call fetch,-r $(LOCK))
+	@command -v npm >/dev/null || { $(call fetch,-r requirements-node.lock); }
+	@$(PIP) --no-build-isolation --no-deps -e .
 	@touch $@
 
 $(KERNEL): $(KERNEL_SOURCES) requirements-zig.lock $(INSTALLED)
@@ -105,7 +112,7 @@ $(VENV)/installed-requirements-peers.lock $(VENV)/installed-requirements-lab.loc
 $(VENV)/installed-%: % $(INSTALLED)
 	@echo "Installing from $< ..."
 	@# The lock has all dependencies, one of which overrides what a library asks for.
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes -r $<
+	@$(call fetch,--no-deps -r $<)
 	@touch $@
 
 bench: peers web
@@ -158,7 +165,7 @@ texts: install
 
 # Build the documentation site; the server shows it at /help.
 docs: install
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-docs.lock
+	@$(call fetch,-r requirements-docs.lock)
 	$(BIN)/sphinx-build -q -W --keep-going -d .cache/doctrees docs docs/_build
 
 # Wheels of the native kernel for x86-64 and ARM, so that its users need no compiler.
@@ -182,8 +189,7 @@ release-check: install web
 # What a run's curves and files can go to; the tests need all of them.
 SINKS := --extra exports --extra tensorboard --extra mlflow --extra wandb
 
-lock:
-	@$(BIN)/python -m pip install -q --disable-pip-version-check uv
+lock: install
 	$(eval COMPILE := $(BIN)/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header --no-annotate)
 	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster $(SINKS) -o requirements.lock
 	$(COMPILE) pyproject.toml --group dev --group server --group build --extra figures --extra studies --extra notebook --extra shapes --extra cluster $(SINKS) --extra cuda -c requirements.lock -o requirements-cuda.lock
@@ -191,6 +197,7 @@ lock:
 	$(COMPILE) --group pyproject.toml:lab -c requirements.lock -o requirements-lab.lock
 	$(COMPILE) --group pyproject.toml:docs -c requirements.lock -o requirements-docs.lock
 	$(COMPILE) --group pyproject.toml:peers -c requirements.lock -o requirements-peers.lock
+	$(COMPILE) --group pyproject.toml:uv -o requirements-uv.lock
 	$(COMPILE) --group pyproject.toml:node -o requirements-node.lock
 	$(COMPILE) --group pyproject.toml:zig -o requirements-zig.lock
 	$(COMPILE) --group pyproject.toml:xla --no-deps -o requirements-xla.lock
