@@ -22,7 +22,7 @@ run: install web
 
 # uv installs in a third of pip's time. It reads no settings of pip: where these name another
 # registry, which uv does not find, pip installs.
-fetch = $(BIN)/uv pip install -q --python $(BIN)/python --compile-bytecode --require-hashes $(1) \
+fetch = $(BIN)/uv pip install -q --no-config --python $(BIN)/python --compile-bytecode --require-hashes $(1) \
 	|| $(PIP) --require-hashes $(1)
 PIP = $(BIN)/python -m pip install -q --disable-pip-version-check
 
