@@ -15,7 +15,7 @@ from typing import Annotated, cast
 from uuid import UUID
 
 from pydantic import StringConstraints
-from sqlalchemy import func, select, update
+from sqlalchemy import ColumnElement, func, select, update
 from sqlalchemy.exc import IntegrityError, OperationalError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
@@ -130,12 +130,24 @@ def all_tokens(session: Session) -> Sequence[Token]:
     return session.scalars(select(Token).order_by(Token.created_at.desc(), Token.id)).all()
 
 
-def has_admin(session: Session, except_for: UUID | None = None) -> bool:
-    """Return whether a live admin token exists, other than `except_for`."""
-    others = select(func.count()).where(
-        Token.scope == ADMIN, Token.id != except_for, Token.live()
-    )
-    return session.execute(others).scalar_one() > 0
+def has_admin(session: Session) -> bool:
+    """Return whether a live admin token exists."""
+    return bool(session.execute(select(func.count()).where(_live_admin())).scalar_one())
+
+
+def _live_admin() -> ColumnElement[bool]:
+    return (Token.scope == ADMIN) & Token.live()
+
+
+def _outlasted(session: Session, token: Token) -> bool:
+    """Return whether another live admin token lasts as long as one of them.
+
+    Locks all of them: two that are revoked at once would each count on the other.
+    """
+    locked = select(Token).where(_live_admin()).order_by(Token.id).with_for_update()
+    ends = [one.expires_at for one in session.scalars(locked) if one.id != token.id]
+    end = token.expires_at
+    return any(other is None or (end is not None and other >= end) for other in ends)
 
 
 def revoke(services: Services, token: UUID, last: bool = False) -> Token:
@@ -144,10 +156,10 @@ def revoke(services: Services, token: UUID, last: bool = False) -> Token:
         found = find(session, Token, token)
         if found.revoked_at is None:
             is_admin = found.scope == ADMIN and services.settings.needs_admin_token
-            if is_admin and not last and not has_admin(session, token):
+            if is_admin and not last and not _outlasted(session, found):
                 detail = (
-                    f"`{found.name}` is the only token of an admin. Create another admin token "
-                    "first, or nobody can create tokens."
+                    f"No other token of an admin lasts as long as `{found.name}`. Create "
+                    "another admin token first, or nobody can create tokens."
                 )
                 raise Conflict(detail, title="The last admin")
             found.revoked_at = found.expires_at if found.expired(session) else now(session)

@@ -129,5 +129,7 @@ def import_files(session: Session, *files: dict[str, Any]) -> None:
         identity = creature.canonical(file["identity"])
         columns = [file[key] for key in ("measured", "provenance", "licence", "credit")]
         row = creature_columns(name, identity, *columns)
-        insert_missing(session, Creature, [{**row, "imported": True}])
+        # A run may be inserting it at this moment.
+        given = {**row, "imported": True}
+        insert_or_update(session, Creature, [given], ["sha256"], {"imported": True})
         link(session, [name])

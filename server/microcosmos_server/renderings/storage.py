@@ -57,10 +57,12 @@ def read(
     without its file.
     """
     found = find(session, creature, kind)
+    # Nobody may wait for a connection because the store is slow, and a request holds one
+    # connection at a time (runs/announce.py).
+    session.commit()
     try:
         return action(found) if found else None
     except FileLost:
-        session.commit()  # A request holds one connection at a time (runs/announce.py).
         # Behind a lost mount every file is missing, and none is lost.
         if fault := mark.fault(services.sessions, services.artifacts):
             raise StoreUnavailable(fault) from None

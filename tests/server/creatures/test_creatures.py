@@ -1,6 +1,7 @@
 """Creatures: reading by name, uploading, and replays."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
@@ -9,6 +10,9 @@ from rq import SimpleWorker
 from rq.serializers import JSONSerializer
 
 from microcosmos.archive import creature
+from microcosmos.naming import LICENCE
+from microcosmos_server.core.database import insert_missing
+from microcosmos_server.creatures import storage
 from microcosmos_server.tables import Creature
 from microcosmos_worker import jobs
 
@@ -25,6 +29,25 @@ def test_an_elite_is_read_as_a_creature_file(api, attempt, record, report):
     assert document["measured"] == elite.measured
     assert document["provenance"] == elite.provenance
     assert creature.parse(document)["sha256"] == elite.creature
+
+
+@pytest.mark.postgresql
+def test_an_import_that_waits_for_a_run_inserting_the_same_creature_keeps_it(
+    api, services, file
+):
+    """What is imported is never deleted, what only a run has found is, with the run."""
+    identity = creature.canonical(file["identity"])
+    row = storage.creature_columns(file["sha256"], identity, None, None, LICENCE)
+    with ThreadPoolExecutor(1) as pool, services.sessions.write.begin() as session:
+        insert_missing(session, Creature, [row])
+        session.flush()
+        answer = pool.submit(api.post, "creatures", json=file)
+        with pytest.raises(TimeoutError):
+            answer.result(0.5)  # It waits for this transaction.
+        session.commit()
+        assert answer.result(20).is_success
+    with services.sessions.read() as session:
+        assert session.get_one(Creature, file["sha256"]).imported
 
 
 def test_a_downloaded_creature_can_be_uploaded_again(api, known):
