@@ -11,9 +11,9 @@ NEEDED = {
     "uuid_parsing": "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427",
     "uuid_type": "an id such as 1b4e28ba-2fa1-41d2-883f-0016d3cca427",
     "too_short": "{min_length} or more items",
-    "too_long": "{max_length} or fewer items",
+    "too_long": "at most {max_length} items",
     "string_too_short": "{min_length} or more characters",
-    "string_too_long": "{max_length} or fewer characters",
+    "string_too_long": "at most {max_length} characters",
     "string_pattern_mismatch": "a text that matches {pattern}",
 }
 """Needed values, by types of pydantic's errors whose messages do not state them, or begin with

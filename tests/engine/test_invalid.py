@@ -47,9 +47,9 @@ def test_a_length_is_told_in_items_and_characters():
 
     for sent, reason in (
         ({"few": [1]}, "needs 2 or more items; got [1]"),
-        ({"few": [1] * 4}, "needs 3 or fewer items; got [1, 1, 1, 1]"),
+        ({"few": [1] * 4}, "needs at most 3 items; got [1, 1, 1, 1]"),
         ({"name": "a"}, "needs 2 or more characters; got 'a'"),
-        ({"name": "aaaa"}, "needs 3 or fewer characters; got 'aaaa'"),
+        ({"name": "aaaa"}, "needs at most 3 characters; got 'aaaa'"),
         ({"name": "bbb"}, "needs a text that matches ^a{2}; got 'bbb'"),
     ):
         with pytest.raises(ValidationError) as refused:

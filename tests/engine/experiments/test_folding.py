@@ -96,7 +96,7 @@ PICTURE = {"kind": "picture", "name": "a", "width": 1, "height": 1, "pixels": "A
 @pytest.mark.parametrize(
     ("change", "needed"),
     [
-        ({"targets": []}, "1 or more items"),
+        ({"targets": []}, "at least 1 item"),
         ({"targets": [{"digit": 3}, {"digit": 3}]}, "must have different names"),
         ({"targets": [{"digit": 10}]}, "less than or equal to 9"),
         ({"targets": [{"kind": "film"}]}, "one of digit, picture"),
