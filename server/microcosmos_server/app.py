@@ -169,5 +169,6 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
     await fanout.redis.aclose()
-    app.state.answers.close()
+    # In a thread: it waits for answers that are being made.
+    await asyncio.to_thread(app.state.answers.close)
     services.close()

@@ -3,32 +3,42 @@
 import csv
 import io
 from typing import Annotated, Any
+from uuid import UUID
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export, poses
+from microcosmos.sizes import size
+from microcosmos.version import VERSION
 
 from ..attempts.checkpoints import last_checkpoint
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, ShareAccess, ShareAccessDep
-from ..core.api import named, sends
-from ..core.errors import NotFound, invalid_field
+from ..core.answers import respond, tag_of
+from ..core.api import Answers, named, sends
+from ..core.errors import Invalid, NotFound, invalid_field
+from ..runs import deps
 from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges, segments
 from ..tables import Artifact, Result, Run
 from . import elites, reading
 from . import measures as recorded_measures
-from .archive_of_request import ShownArchiveDep, archive_answers, refuse_table
+from .archive_of_request import JSON, ShownArchiveDep, archive_answers, refuse_table
 from .schemas import ArchiveRead, CentroidsRead, HistoryRead, ReprojectionRead, ResultsRead
 
 router = APIRouter(prefix="/runs/{run_id}", tags=["archives"])
 BINARY = sends("application/octet-stream", {404: {}})
+UNCHANGED: Answers = {304: {"description": "Unchanged"}}
 
 # About 10 MB.
 POSE_CELLS = 1000
+
+# The file is read and converted in memory, as for exports (`exports/routes.py`).
+LARGEST = 200_000_000
+"""Bytes of a run's file that the server converts; `archive.h5` takes any."""
 
 
 @router.get("/archive", **archive_answers(ArchiveRead), dependencies=[MAY_READ_SHARED])
@@ -97,42 +107,88 @@ def read_poses(
     return Response(poses.batch(found), media_type="application/octet-stream")
 
 
-@router.get("/archive/centroids", dependencies=[MAY_READ_SHARED])
-def read_centroids(run: RunDep, session: SessionDep, services: ServicesDep) -> CentroidsRead:
+def _refuse_large(run: Run, file: Artifact) -> None:
+    """Raise `DomainError` for a file that is too large to convert."""
+    whole = segments.whole(file)
+    if whole.size > LARGEST:
+        detail = (
+            f"The file of run {run.id} has {size(whole.size)}, more than the {size(LARGEST)} "
+            f"that the server converts. Download it: /api/v1/runs/{run.id}/archive.h5"
+        )
+        raise Invalid(detail, title="Run too large")
+
+
+def _file_of_cvt(run_id: UUID, services: ServicesDep, share: ShareAccessDep) -> Artifact | None:
+    """Find the last checkpoint, over a connection that is closed before it is read."""
+    with services.sessions.read() as session:
+        run = deps.run(run_id, session, share)
+        refuse_table(run)
+        if recorded_measures.kind(run)[0] != "cvt":
+            detail = "The archive has no Voronoi cells, and so no centroids."
+            raise NotFound(detail, title="No centroids")
+        if file := last_checkpoint(session, run.id):
+            _refuse_large(run, file)
+        return file
+
+
+@router.get(
+    "/archive/centroids",
+    responses={200: {"model": CentroidsRead}, **UNCHANGED},
+    dependencies=[MAY_READ_SHARED],
+)
+async def read_centroids(
+    request: Request,
+    file: Annotated[Artifact | None, Depends(_file_of_cvt)],
+    services: ServicesDep,
+) -> Response:
     """Return the centroids of a CVT archive; null before its first checkpoint."""
-    refuse_table(run)
-    if recorded_measures.kind(run)[0] != "cvt":
-        detail = "The archive has no Voronoi cells, and so no centroids."
-        raise NotFound(detail, title="No centroids")
-    first = last_checkpoint(session, run.id)
-    if first is None:
-        return CentroidsRead(centroids=None)
-    found = export.centroids(segments.read(services.artifacts, first))
-    return CentroidsRead(centroids=found.tolist())
+
+    def make() -> bytes:
+        found = file and export.centroids(segments.read(services.artifacts, file)).tolist()
+        return CentroidsRead(centroids=found).model_dump_json().encode()
+
+    tag = tag_of(VERSION, "centroids", file and segments.whole(file).sha256)
+    return await respond(request, tag, make, JSON, {})
 
 
 @router.get("/archive.h5", **BINARY, dependencies=[MAY_READ_SHARED])
 def download_archive(
-    request: Request,
-    run: RunDep,
-    share: ShareAccessDep,
-    session: SessionDep,
-    services: ServicesDep,
+    request: Request, run_id: UUID, share: ShareAccessDep, services: ServicesDep
 ) -> Response:
     """Return the file of the last checkpoint; it contains the archive or the table."""
-    artifact = _file(session, run, share)
+    with services.sessions.read() as session:
+        run = deps.run(run_id, session, share)
+        artifact = _file(session, run, share)
+    # Over no connection: the store may be slow.
     return ranges.file(request, services.artifacts, artifact, attachment(run, "h5"))
 
 
-@router.get("/archive.csv", **sends("text/csv"), dependencies=[MAY_READ_SHARED])
-def download_archive_csv(
-    run: RunDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
+def _file_with_run(
+    run_id: UUID, services: ServicesDep, share: ShareAccessDep
+) -> tuple[Run, Artifact]:
+    """Find the file of an archive, over a connection that is closed before it is read."""
+    with services.sessions.read() as session:
+        run = deps.run(run_id, session, share)
+        refuse_table(run)
+        file = _file(session, run, share)
+        _refuse_large(run, file)
+        return run, file
+
+
+@router.get("/archive.csv", **sends("text/csv", UNCHANGED), dependencies=[MAY_READ_SHARED])
+async def download_archive_csv(
+    request: Request,
+    found: Annotated[tuple[Run, Artifact], Depends(_file_with_run)],
+    services: ServicesDep,
 ) -> Response:
     """Return the archive of the last checkpoint in the columns of pyribs."""
-    refuse_table(run)
-    artifact = _file(session, run, share)
-    text = export.csv(segments.read(services.artifacts, artifact))
-    return Response(text, headers=attachment(run, "csv"), media_type="text/csv")
+    run, file = found
+
+    def make() -> bytes:
+        return export.csv(segments.read(services.artifacts, file)).encode()
+
+    tag = tag_of(VERSION, "csv", segments.whole(file).sha256)
+    return await respond(request, tag, make, "text/csv", attachment(run, "csv"))
 
 
 def _file(session: Session, run: Run, share: ShareAccess | None) -> Artifact:

@@ -5,16 +5,19 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+import reports
 from answers import detail, errors, fields
+from installation import GREEDY
 from pose_streams import unpacked
 from reports import archive_file, audit
 
-from microcosmos.archive import file
+from microcosmos.archive import export, file
 from microcosmos.spec import parse
 from microcosmos_server.archives import reading, routes
 from microcosmos_server.attempts.claim import claim
 from microcosmos_server.renderings import storage as renderings
 from microcosmos_server.runs.submission import submit
+from microcosmos_server.storage import segments
 from microcosmos_server.tables import AUDIT
 
 
@@ -245,3 +248,70 @@ def test_the_centroids_of_a_tessellation_are_those_of_its_file(api, services, sp
     attempt.save(1, file.dump({"archive": {"centroids": places}}, {"format": file.FORMAT}))
     answer = api.get(f"runs/{run_id}/archive/centroids").json()
     assert answer["centroids"] == places.tolist()
+
+
+TESSELLATED = reports.DEMO.model_dump(mode="json")
+TESSELLATED["archive"]["centroids"] = 3
+
+
+@pytest.fixture
+def save(services, spec, report):
+    """A function that saves a generation of a run with the given centroids."""
+    attempt = claim(services, submit(services, parse(TESSELLATED))[0].id, "worker")
+
+    def write(generation, places) -> UUID:
+        tree, attributes = file.load(archive_file(spec))
+        tree["archive"]["centroids"] = np.array(places)
+        attempt.record(report(generation, {2: generation}), 1.0)
+        attempt.save(generation, file.dump(tree, attributes))
+        return attempt.run_id
+
+    return write
+
+
+@pytest.fixture
+def reads(monkeypatch) -> list[list[str]]:
+    """For each file that the server reads whole, the requests that hold a connection then."""
+    read, found = segments.read, []
+
+    def watched(*arguments):
+        found.append([str(one) for one in list(GREEDY._held.values()) if one])
+        return read(*arguments)
+
+    monkeypatch.setattr(segments, "read", watched)
+    return found
+
+
+@pytest.mark.parametrize("path", ["archive.csv", "archive/centroids"])
+def test_a_file_is_converted_once_and_without_a_connection(api, save, reads, path):
+    url = f"runs/{save(1, [[0.25, 0.5]])}/{path}"
+    first = api.get(url)
+    assert first.status_code == 200, first.text
+    known = {"If-None-Match": first.headers["etag"]}
+    unchanged = api.get(url, headers=known)
+    assert (unchanged.status_code, unchanged.content) == (304, b"")
+    assert api.get(url).content == first.content
+    assert reads == [[]]
+    save(2, [[0.75, 0.5]])
+    assert api.get(url, headers=known).status_code == 200
+    assert reads == [[], []]
+
+
+def test_the_table_of_a_file_is_that_of_the_library(api, run_id, saved):
+    answer = api.get(f"runs/{run_id}/archive.csv")
+    assert answer.text == export.csv(saved)
+    assert answer.headers["content-type"] == "text/csv; charset=utf-8"
+    name = f"archive-{str(run_id)[:8]}.csv"
+    assert answer.headers["content-disposition"] == f'attachment; filename="{name}"'
+
+
+@pytest.mark.parametrize("path", ["archive.csv", "archive/centroids"])
+def test_a_file_that_is_too_large_is_downloaded_not_converted(
+    api, save, monkeypatch, reads, path
+):
+    monkeypatch.setattr(routes, "LARGEST", 10)
+    url = f"runs/{save(1, [[0.25, 0.5]])}"
+    said = detail(api.get(f"{url}/{path}"), 422)
+    assert f"more than the 10 B that the server converts. Download it: /api/v1/{url}" in said
+    assert reads == []
+    assert api.get(f"{url}/archive.h5").status_code == 200

@@ -6,9 +6,12 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+from answers import detail, errors
 from scipy import stats
 
+import microcosmos.statistics
 from microcosmos.statistics.effects import holm
+from microcosmos_server.statistics import routes
 from microcosmos_server.tables import Generation, Run
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1, 0.2]}
@@ -176,6 +179,79 @@ def test_negative_fitness_is_said_whatever_is_measured(api, sweep, services, mea
     share = 0.5 if "@" in measures else 1.0
     values = found["measures"][0]["groups"][0]["values"]
     np.testing.assert_allclose(values, share * SCORES[0])
+
+
+def test_no_connection_is_held_while_runs_are_compared(services, sweep, monkeypatch):
+    compare, held = microcosmos.statistics.compare, []
+    pool = services.sessions.engine.pool
+
+    def watched(*arguments):
+        held.append(pool.checkedout())
+        return compare(*arguments)
+
+    monkeypatch.setattr(microcosmos.statistics, "compare", watched)
+    with services.sessions.read() as session:
+        question = routes.of_sweep(session, UUID(sweep["id"]), "")
+    assert routes.document(services, question).tests == 9
+    assert routes.table(services, question, "csv")
+    assert held == [0, 0]
+
+
+@pytest.mark.parametrize(("limit", "most"), [("MAX_PAIRS", 8), ("MAX_RUN_PAIRS", 224)])
+def test_more_pairs_than_an_answer_compares_are_refused(
+    api, sweep, services, monkeypatch, limit, most
+):
+    """Three groups of five runs have 3 pairs of groups and 75 pairs of runs in each measure."""
+    monkeypatch.setattr(routes, limit, most + 1)
+    assert read(api, sweep).json()["tests"] == 9
+    with services.sessions.write.begin() as session:
+        for run in sweep["cases"][0]["runs"]:
+            session.get_one(Run, UUID(run)).rewinds += 1  # The answer is not kept.
+    monkeypatch.setattr(routes, limit, most)
+    said = "9 pairs of groups and 225 pairs of runs over all measures"
+    for path in ("statistics", "statistics.csv", "statistics.tex"):
+        refused = read(api, sweep, path)
+        (error,) = errors(refused)
+        assert (error["field"], error["got"]) == ("sweep", said)
+        assert f"microcosmos compare {sweep['id']}" in detail(refused, 422)
+    assert read(api, sweep, measures="qd_score,best").json()["tests"] == 6
+    runs = ",".join(run for case in sweep["cases"] for run in case["runs"])
+    (error,) = errors(api.get("statistics", params={"runs": runs}))
+    assert error["field"] == "runs"
+    with services.sessions.write.begin() as session:
+        session.get_one(Run, UUID(sweep["cases"][0]["runs"][0])).status = "failed"
+    assert read(api, sweep).json()["tests"] == 0  # Four runs have none, whatever they cost.
+
+
+@pytest.mark.postgresql
+def test_more_generations_than_an_answer_reads_are_refused(
+    api, post, write, services, update_rows, monkeypatch
+):
+    """Last values need two of three generations of 10 runs, also where fitness is negative."""
+    made = post(seeds=5, grid={"world.viscosity": [0.05, 0.1]}).json()
+    runs = [run for case in made["cases"] for run in case["runs"]]
+    for score, run in enumerate(runs):
+        write(run, 1.0 + score)
+    update_rows(Generation, summary=None, best=-1.0)
+    with services.sessions.write.begin() as session:
+        for run in runs:
+            row = session.get_one(Generation, (UUID(run), 2))
+            names = [column.name for column in Generation.__table__.columns]
+            same = {name: getattr(row, name) for name in names}
+            session.add(Generation(**same | {"generation": 3, "evaluations": 24}))
+            session.get_one(Run, UUID(run)).generation = 3
+    monkeypatch.setattr(routes, "MAX_GENERATIONS", 20)
+    last = read(api, made).json()
+    assert last["measures"][0]["groups"][1]["values"] == [6.0, 7.0, 8.0, 9.0, 10.0]
+    assert any(one.startswith("Some runs have negative fitness") for one in last["cautions"])
+    for measure in ("qd_score@16", "coverage>=0.5"):
+        refused = read(api, made, measures=measure)
+        (error,) = errors(refused)
+        assert (error["field"], error["got"]) == ("sweep", "30 in all runs")
+        assert "or for last values alone" in detail(refused, 422)
+    monkeypatch.setattr(routes, "MAX_GENERATIONS", 30)
+    at = read(api, made, measures="qd_score@16").json()
+    assert at["measures"][0]["groups"][0]["values"] == [1.0, 2.0, 3.0, 4.0, 5.0]
 
 
 def test_wrong_use_is_refused_with_a_sentence(api, sweep, write, services):

@@ -1510,7 +1510,8 @@ export interface paths {
          *
          *     `runs` are ids separated by commas; or give the id of a `sweep`. `measures` are curves
          *     (`qd_score`), curves after evaluations (`qd_score@6400`) or the evaluations to a value
-         *     (`best>=0.5`), separated by commas.
+         *     (`best>=0.5`), separated by commas. Questions that would take long are refused;
+         *     `microcosmos compare` takes any.
          */
         get: operations["read_statistics_api_v1_statistics_get"];
         put?: never;
@@ -5736,6 +5737,13 @@ export interface operations {
                     "text/csv": string;
                 };
             };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
             /** @description A problem (RFC 9457) */
             default: {
                 headers: {
@@ -5804,6 +5812,13 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["CentroidsRead"];
                 };
+            };
+            /** @description Unchanged */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem (RFC 9457) */
             default: {
