@@ -104,12 +104,13 @@ def installations(tmp_path_factory, redis_url) -> Iterator[Callable[[str], Insta
 
 
 @pytest.fixture(autouse=True)
-def _one_connection_at_a_time() -> Iterator[None]:
-    """Whatever a test asks for, the server holds one connection at a time to answer it."""
+def _no_request_is_greedy() -> Iterator[None]:
+    """Whatever a test asks for, the server holds one connection at a time to answer it, and
+    none while it waits for the store."""
     yield
     found = GREEDY.found.copy()
     GREEDY.found.clear()
-    assert not found, f"a request held two connections:\n{found[0]}"
+    assert not found, found[0]
 
 
 @pytest.fixture

@@ -71,6 +71,7 @@ def running(settings: Settings) -> Iterator[str]:
     """Run a server in a thread; yield its address."""
     services = connect(settings)
     GREEDY.watch(services.sessions.engine)
+    GREEDY.watch_store(services.artifacts)
     app = create_app(services)
     config = uvicorn.Config(
         Marked(app), port=0, log_level="warning", timeout_graceful_shutdown=5

@@ -49,8 +49,10 @@ def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> Non
     for spec, run_ids in runs:
         _refuse_missing(spec, held)
         names = [name for name in initial_of(spec) if name in held]
-        rows = [{"run_id": run, "creature": name} for run in run_ids for name in names]
-        insert_missing(session, InitialCreature, rows)
+        # For each run: thousands of runs and names are millions of rows.
+        for run in run_ids:
+            rows = [{"run_id": run, "creature": name} for name in names]
+            insert_missing(session, InitialCreature, rows)
 
 
 def initial_of(spec: Spec) -> Sequence[str]:

@@ -1,5 +1,6 @@
 """Change runs, and publish events of runs after a transaction has changed them."""
 
+import json
 import logging
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
@@ -25,6 +26,9 @@ VOLATILE_FIELDS = {
 """Fields that may differ at each reading; changes of these alone cause no event."""
 
 
+SPEC_BYTES = 20_000
+"""Longest spec, as JSON, in an event. Redis keeps thousands of events, and pages that lack the
+spec of a run ask for it."""
 SENT_SECONDS = 0.05
 """Longest time to wait until events are sent; a silent Redis drops them at once."""
 
@@ -32,7 +36,7 @@ SENT_SECONDS = 0.05
 def announce(
     services: Services, *run_ids: UUID, without: Collection[str] = ()
 ) -> list[RunRead]:
-    """Publish an event for each run, `without` some fields, and return the runs.
+    """Publish an event for each run, `without` some fields and a long spec; return the runs.
 
     A slow reader may publish a stale state after a newer one. So the runs are read again after
     publishing, and those that have changed are published again. A failure is only logged: the
@@ -43,6 +47,8 @@ def announce(
         while changed_runs := _changed_runs(services, run_ids, published):
             for run in changed_runs:
                 data = run.model_dump(mode="json", exclude=set(without))
+                if len(json.dumps(data.get("spec"))) > SPEC_BYTES:
+                    del data["spec"]
                 services.events.publish("run", run.id, data)
                 published[run.id] = run
             services.events.messenger.flush(SENT_SECONDS)

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from itertools import product
 from math import prod
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 from sqlalchemy.orm import Session
 
+from microcosmos.sizes import size
 from microcosmos.spec import Spec, paths
 from microcosmos.spec.creature import CreatureError
 
@@ -28,6 +30,9 @@ from ..specs.parsing import Parse
 from .schemas import MAX_RUNS, SweepCreate
 
 MAX_ERRORS = 20
+# Each run of a sweep has its own copy. A usual spec has 5 kB.
+MAX_SPEC_BYTES = 50_000_000
+"""Limit on the specs of all runs of a sweep, as JSON."""
 
 
 @dataclass(frozen=True)
@@ -85,14 +90,18 @@ def related_paths(field: str, values: Mapping[str, Any]) -> list[str]:
 
 
 def _refuse_alike(cases: Sequence[Case]) -> None:
-    seen: dict[str, Case] = {}
+    seen: dict[bytes, Case] = {}
     for case in cases:
-        document = json.dumps(case.spec.model_dump(mode="json"), sort_keys=True)
-        earlier = seen.setdefault(document, case)
+        earlier = seen.setdefault(_digest(case.spec), case)
         if earlier is not case:
             path = next(p for p in case.places if case.places[p] != earlier.places[p])
             reason = f"gives the same run as {earlier.field(path)}: {combination(case.values)}"
             raise invalid_fields(FieldError(field=case.field(path), reason=reason))
+
+
+def _digest(spec: Spec, include: Any = None) -> bytes:
+    """Return the hash of a spec, or of some of its fields: a thousand specs may be long."""
+    return sha256(spec.model_dump_json(include=include).encode()).digest()
 
 
 def relocated(error: FieldError, field: str, before: str = "") -> FieldError:
@@ -157,7 +166,7 @@ def plan(sent: SweepCreate, parse: Parse) -> Plan:
     if errors := [error for error in wrong if error]:
         raise invalid_fields(*errors)
     seeds = _seeds(sent, document, parse)
-    _refuse_many(sent, max(1, len(seeds)))
+    _refuse_many(sent, max(1, len(seeds)), document)
     if seeds:
         document = {**document, "seed": seeds[0]}
     cases = cases_of(document, sent.grid, parse)
@@ -205,16 +214,22 @@ def _seeds(sent: SweepCreate, document: dict[str, Any], parse: Parse) -> list[in
     return list(range(first, last + 1))
 
 
-def _refuse_many(sent: SweepCreate, seeds: int) -> None:
+def _refuse_many(sent: SweepCreate, seeds: int, document: dict[str, Any]) -> None:
     lengths = [len(values) for values in sent.grid.values()]
     total = prod(lengths) * seeds
-    if total <= MAX_RUNS:
-        return
     factors = " x ".join(f"{count}" for count in (*lengths, seeds))
-    reason = f"needs at most {MAX_RUNS:,} runs in all; got {factors} = {total:,}"
+    length = len(json.dumps(document))
+    length += sum(len(json.dumps(values)) // len(values) for values in sent.grid.values())
+    if total > MAX_RUNS:
+        needed, got = f"at most {MAX_RUNS:,} runs in all", f"{factors} = {total:,}"
+    elif total * length > MAX_SPEC_BYTES:
+        needed = f"specs of at most {size(MAX_SPEC_BYTES)} in all"
+        got = f"{total:,} of some {size(length)}"
+    else:
+        return
     field = "grid" if sent.grid else "seeds"
-    error = FieldError(field=field, reason=reason, needed=f"{MAX_RUNS}", got=total)
-    raise invalid_fields(error)
+    reason = f"needs {needed}; got {got}"
+    raise invalid_fields(FieldError(field=field, reason=reason, needed=needed, got=got))
 
 
 def refuse_too_large(plan: Plan, limit: int) -> None:
@@ -232,7 +247,7 @@ def refuse_too_large(plan: Plan, limit: int) -> None:
 def refuse_initial(session: Session, plan: Plan) -> None:
     """Raise `DomainError` if one of the runs cannot start from its initial creatures."""
     include = initial.COMPATIBILITY_FIELDS
-    cases = {case.spec.model_dump_json(include=include): case for case in plan.cases}
+    cases = {_digest(case.spec, include): case for case in plan.cases}
     for case in cases.values():
         try:
             initial.check(session, case.spec)

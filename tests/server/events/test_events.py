@@ -19,6 +19,7 @@ from microcosmos_server.core.processes import end
 from microcosmos_server.events import routes
 from microcosmos_server.events.schemas import EVENTS
 from microcosmos_server.local import redis_embedded
+from microcosmos_server.runs import announce as announcing
 from microcosmos_server.runs.announce import announce
 from microcosmos_server.services import messages
 from microcosmos_server.services import services as connecting
@@ -120,6 +121,22 @@ def test_an_unchanged_run_is_published_once(services, run_id, monkeypatch, recor
     sent.clear()
     announce(services, run_id, without=["spec"])
     assert len(sent) == 1
+
+
+def test_an_event_carries_no_long_spec(services, run_id, monkeypatch):
+    """Redis keeps thousands of events: with specs of a megabyte, ten gigabytes."""
+    sent = []
+    monkeypatch.setattr(services.events, "publish", lambda _kind, _run, data: sent.append(data))
+    announce(services, run_id)
+    assert "search" in sent[-1]["spec"]
+    length = len(json.dumps(sent[-1]["spec"]))
+    monkeypatch.setattr(announcing, "SPEC_BYTES", length)
+    announce(services, run_id)
+    assert "spec" in sent[-1]
+    monkeypatch.setattr(announcing, "SPEC_BYTES", length - 1)
+    (run,) = announce(services, run_id)
+    assert run.spec
+    assert sent[-1].keys() == sent[0].keys() - {"spec"}
 
 
 def test_a_stream_of_one_run_excludes_others(address, services):

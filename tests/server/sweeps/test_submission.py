@@ -1,12 +1,15 @@
 """Submitting a sweep: its grid and seeds, and invalid sweeps, refused as a whole."""
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from answers import detail, fields
 from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos_server.creatures import initial
+from microcosmos_server.sweeps import plan
 from microcosmos_server.tables import Run, Sweep
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
@@ -48,6 +51,17 @@ def test_a_path_reaches_into_lists_whole_parts_and_parts_that_are_off(api, post)
     assert {one["body"]["builder"] for one in found} == {"ring"}
     found = specs({"world.energy.packets": [2, 3]})
     assert [one["world"]["energy"]["packets"] for one in found] == [2, 3]
+
+
+def test_the_specs_of_a_sweep_are_limited_in_all(api, spec, monkeypatch):
+    """Each run has its own copy, with up to 4,096 names of initial creatures."""
+    long = len(json.dumps(spec))
+    monkeypatch.setattr(plan, "MAX_SPEC_BYTES", 10 * long + 100)
+    assert api.post("sweeps/estimate", json={"spec": spec, "seeds": 9}).is_success
+    for asked in ({"seeds": 11}, {"seeds": 6, "grid": {"world.viscosity": [0.1, 0.2]}}):
+        answer = api.post("sweeps/estimate", json={"spec": spec, **asked})
+        assert fields(answer) == ["grid" if "grid" in asked else "seeds"]
+        assert "needs specs of at most" in detail(answer, 422)
 
 
 @pytest.mark.parametrize(

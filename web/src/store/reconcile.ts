@@ -13,11 +13,15 @@ export function applyEvent(state: State, event: RunEvent): State {
   const next = countEvent(state, event.id);
   const known = state.runs.get(event.id);
   const spec = newest(known?.spec, event.spec);
-  if (!spec) return { ...next, eventsWithoutSpec: new Map(state.eventsWithoutSpec).set(event.id, event) };
-  const run = { ...event, spec };
+  // Lists ask for the spec of a run that they do not know: events carry no long ones.
+  const before = known ?? state.eventsWithoutSpec.get(event.id);
   const listVersion =
-    state.listVersion + Number(!known || LIST_FIELDS.some((name) => isDifferent(run[name], known[name])));
-  return { ...next, listVersion, runs: new Map(state.runs).set(run.id, run) };
+    state.listVersion + Number(!before || LIST_FIELDS.some((name) => isDifferent(event[name], before[name])));
+  if (!spec) {
+    const eventsWithoutSpec = new Map(state.eventsWithoutSpec).set(event.id, event);
+    return { ...next, listVersion, eventsWithoutSpec };
+  }
+  return { ...next, listVersion, runs: new Map(state.runs).set(event.id, { ...event, spec }) };
 }
 
 /** Fields that decide whether a run belongs to a list. */

@@ -52,6 +52,16 @@ describe("events", () => {
     expect(withRunEvent(INITIAL_STATE, withoutSpec).runs.size).toBe(0);
   });
 
+  it("of an unknown run without its spec let lists ask for it once, and when it moves", () => {
+    const { spec: _, ...withoutSpec } = RUN;
+    const first = withRunEvent(INITIAL_STATE, withoutSpec);
+    expect(first.listVersion).toBe(INITIAL_STATE.listVersion + 1);
+    const next = withRunEvent(first, { ...withoutSpec, generation: 3 });
+    expect(next.listVersion).toBe(first.listVersion);
+    const ended = withRunEvent(next, { ...withoutSpec, status: "cancelled" });
+    expect(ended.listVersion).toBe(next.listVersion + 1);
+  });
+
   it("of runs that are not shown are not kept", () => {
     expect(after(INITIAL_STATE, elites(1, 0, "x")).details.size).toBe(0);
   });
