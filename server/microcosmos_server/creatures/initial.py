@@ -1,6 +1,7 @@
 """Initial creatures of a run: check that they fit its spec, and record them."""
 
 from collections.abc import Container, Sequence
+from itertools import islice
 from typing import Any
 from uuid import UUID
 
@@ -22,6 +23,8 @@ COMPATIBILITY_FIELDS: Any = {
     "search": {"initial"},
 }
 """The parts of a spec that decide whether it can start from creatures."""
+ROWS = 10_000
+"""Rows to insert at once: a sweep may have hundreds of thousands."""
 
 
 def check(session: Session, spec: Spec) -> None:
@@ -46,13 +49,17 @@ def record(session: Session, runs: Sequence[tuple[Spec, Sequence[UUID]]]) -> Non
     # that two requests cannot deadlock. SQLite has one writer, and no such locks.
     locked = some.with_for_update(read=True, key_share=True)
     held = set(session.scalars(locked)) if named else set[str]()
-    for spec, run_ids in runs:
+    for spec, _ in runs:
         _refuse_missing(spec, held)
-        names = [name for name in initial_of(spec) if name in held]
-        # For each run: thousands of runs and names are millions of rows.
-        for run in run_ids:
-            rows = [{"run_id": run, "creature": name} for name in names]
-            insert_missing(session, InitialCreature, rows)
+    rows = (
+        {"run_id": run, "creature": name}
+        for spec, run_ids in runs
+        for run in run_ids
+        for name in initial_of(spec)
+        if name in held
+    )
+    while some_rows := list(islice(rows, ROWS)):
+        insert_missing(session, InitialCreature, some_rows)
 
 
 def initial_of(spec: Spec) -> Sequence[str]:

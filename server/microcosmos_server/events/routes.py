@@ -19,7 +19,8 @@ from ..services.messages import RESET
 
 QUEUE_SIZE = 1000
 """Events that wait for a slow listener; with more it has to fetch everything again."""
-PAGE = 500
+PAGE = 100
+"""Events to read at once: each may have many kilobytes."""
 # A closing server waits at most this long for a read to end.
 BLOCK_MS = 1000
 

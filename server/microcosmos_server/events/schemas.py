@@ -18,7 +18,7 @@ class RunChange(RunRead):
     """A run has changed, at most once a second while it computes."""
 
     spec: dict[str, Any] = Field(default={})
-    """Left out while the run computes."""
+    """Left out while the run computes, and if it is long."""
 
 
 class OfGeneration(Wire):

@@ -20,6 +20,9 @@ from redis import Redis, RedisError
 
 STREAM_LENGTH = 10_000
 """Approximate length of the stream. A client that missed more fetches everything."""
+STREAM_BYTES = 100_000_000
+"""Approximate bytes of the long events in the stream: the longer an event is, the fewer others
+stay. The elites of one generation may have megabytes, and Redis keeps all in memory."""
 RESET = "reset"
 """The kind of an event that tells clients to fetch everything."""
 WAITING = 10_000
@@ -132,8 +135,9 @@ class Events:
         self.messenger.send(*self._entry(kind, str(run_id), text))
 
     def _entry(self, kind: str, run: str, data: str) -> Command:
-        length = ("MAXLEN", "~", STREAM_LENGTH)
-        return "XADD", self.stream, *length, "*", "event", kind, "run", run, "data", data
+        length = min(STREAM_LENGTH, max(1, STREAM_BYTES // len(data)))
+        trim = ("MAXLEN", "~", length)
+        return "XADD", self.stream, *trim, "*", "event", kind, "run", run, "data", data
 
     def forget(self, seconds: float) -> None:
         """Delete events that are older; a client that missed them fetches everything."""

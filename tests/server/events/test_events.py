@@ -345,3 +345,13 @@ def test_the_stream_is_trimmed(services, monkeypatch):
         services.events.publish("run", uuid4(), {})
     messages.flush()
     assert services.redis.xlen(services.events.stream) <= 200
+
+
+def test_the_bytes_of_the_stream_are_limited(services, monkeypatch, published):
+    """Each event here takes a part of Redis's list of its own, which trims whole parts."""
+    monkeypatch.setattr(messages, "STREAM_BYTES", 100_000)
+    for number in range(50):
+        services.events.publish("elites", uuid4(), {"number": number, "creature": "a" * 9_900})
+    services.events.publish("run", uuid4(), {})
+    found = [data.get("number") for _, data in published()]
+    assert found == [*range(40, 50), None]

@@ -5,12 +5,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from answers import detail, fields
+from pydantic import BaseModel
 from sqlalchemy import select
 
 from microcosmos.archive import creature
 from microcosmos_server.creatures import initial
 from microcosmos_server.sweeps import plan
-from microcosmos_server.tables import Run, Sweep
+from microcosmos_server.tables import InitialCreature, Run, Sweep
 
 VISCOSITIES = {"world.viscosity": [0.05, 0.1]}
 
@@ -62,6 +63,53 @@ def test_the_specs_of_a_sweep_are_limited_in_all(api, spec, monkeypatch):
         answer = api.post("sweeps/estimate", json={"spec": spec, **asked})
         assert fields(answer) == ["grid" if "grid" in asked else "seeds"]
         assert "needs specs of at most" in detail(answer, 422)
+
+
+def test_the_initial_creatures_of_a_sweep_are_limited_in_all(
+    api, post, spec, elite, monkeypatch
+):
+    """One transaction inserts a row for each."""
+    monkeypatch.setattr(plan, "MAX_INITIAL", 5)
+    spec["search"]["initial"] = [elite]
+    for asked in ({"seeds": 6}, {"seeds": 3, "grid": VISCOSITIES}):
+        answer = post(**asked)
+        assert fields(answer) == ["grid" if "grid" in asked else "seeds"]
+        assert "needs at most 5 initial creatures in all runs; got 6 in 6" in detail(
+            answer, 422
+        )
+    assert post(seeds=3, grid={"search.initial": [[], [elite]]}).json()["total"] == 6
+    assert post(seeds=5).json()["total"] == 5
+
+
+def test_initial_creatures_are_inserted_in_parts(services, post, spec, elite, monkeypatch):
+    """Of a thousand runs with thousands of names each, at once they fill the memory."""
+    inserted, insert = [], initial.insert_missing
+
+    def count(session, table, rows):
+        inserted.append(len(rows))
+        insert(session, table, rows)
+
+    monkeypatch.setattr(initial, "ROWS", 4)
+    monkeypatch.setattr(initial, "insert_missing", count)
+    spec["search"]["initial"] = [elite]
+    runs = post(seeds=5, grid=VISCOSITIES).json()["cases"]
+    assert inserted == [4, 4, 2]
+    with services.sessions.read() as session:
+        found = session.execute(select(InitialCreature.run_id, InitialCreature.creature)).all()
+    assert {(str(run), name) for run, name in found} == {
+        (run, elite) for case in runs for run in case["runs"]
+    }
+
+
+def test_the_order_of_settings_makes_no_other_run():
+    settings = {"gain": 1, "delay": 2}
+
+    class Plugged(BaseModel):
+        settings: dict[str, int]
+
+    one, other = settings, dict(reversed(settings.items()))
+    digests = {plan._digest(Plugged(settings=each)) for each in (one, other)}
+    assert len(digests) == 1
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,15 @@ export function applyEvent(state: State, event: RunEvent): State {
     const eventsWithoutSpec = new Map(state.eventsWithoutSpec).set(event.id, event);
     return { ...next, listVersion, eventsWithoutSpec };
   }
-  return { ...next, listVersion, runs: new Map(state.runs).set(event.id, { ...event, spec }) };
+  const runs = new Map(state.runs).set(event.id, { ...event, spec });
+  const isExtended = !event.spec && known!.generations !== event.generations;
+  // An extension changes the spec: the run is fetched again if it is shown.
+  return { ...next, listVersion, runs, epochs: isExtended ? raised(state.epochs, event.id) : state.epochs };
 }
+
+/** The counters with one more for an id. */
+export const raised = (counts: ReadonlyMap<string, number>, id: string) =>
+  new Map(counts).set(id, (counts.get(id) ?? 0) + 1);
 
 /** Fields that decide whether a run belongs to a list. */
 const LIST_FIELDS = ["status", "name", "tags", "note", "deleted_at"] as const;

@@ -4,7 +4,7 @@ import type * as wire from "../api/types";
 import * as details from "./detail";
 import { withPoint } from "./curves";
 import type { Toast } from "./toasts";
-import { applyEvent, applyResponses, countEvent } from "./reconcile";
+import { applyEvent, applyResponses, countEvent, raised } from "./reconcile";
 
 export type Connection = "connecting" | "live" | "lost";
 
@@ -35,7 +35,7 @@ export interface State {
   listVersion: number;
   /** Increases if everything has to be fetched again. */
   epoch: number;
-  /** The same for each run, after a rewind. */
+  /** The same for each run, after a rewind, or after an extension that left its spec out. */
   epochs: ReadonlyMap<string, number>;
 }
 
@@ -59,10 +59,6 @@ export const INITIAL_STATE: State = {
   epoch: 0,
   epochs: new Map(),
 };
-
-/** The counters with one more for an id. */
-const raised = (counts: ReadonlyMap<string, number>, id: string) =>
-  new Map(counts).set(id, (counts.get(id) ?? 0) + 1);
 
 /** The version of a run's detail; it increases with every reset and rewind. */
 export const epochOf = ({ epoch, epochs }: State, run: string): number => epoch + (epochs.get(run) ?? 0);

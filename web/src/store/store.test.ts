@@ -62,6 +62,16 @@ describe("events", () => {
     expect(ended.listVersion).toBe(next.listVersion + 1);
   });
 
+  it("of an extended run without its spec let it be fetched again", () => {
+    const { spec: _, ...withoutSpec } = RUN;
+    const same = withRunEvent(opened, { ...withoutSpec, generation: 3 });
+    expect(epochOf(same, "a")).toBe(epochOf(opened, "a"));
+    const extended = withRunEvent(opened, { ...withoutSpec, generations: 20 });
+    expect(epochOf(extended, "a")).toBe(epochOf(opened, "a") + 1);
+    const whole = withRunEvent(opened, { ...RUN, generations: 20 });
+    expect(epochOf(whole, "a")).toBe(epochOf(opened, "a"));
+  });
+
   it("of runs that are not shown are not kept", () => {
     expect(after(INITIAL_STATE, elites(1, 0, "x")).details.size).toBe(0);
   });
