@@ -21,7 +21,7 @@ from microcosmos_server.choices import choosing
 from microcosmos_server.creatures import initial
 from microcosmos_server.forks.routes import extend, longer
 from microcosmos_server.runs.submission import submit
-from microcosmos_server.statistics.routes import records
+from microcosmos_server.statistics.routes import of_runs, records
 from microcosmos_server.tables import Elite, Run
 from microcosmos_worker.evolution import compute
 
@@ -126,8 +126,9 @@ def test_an_extended_run_takes_back_the_reevaluation_at_its_first_end(services):
     compute(claim(services, run_id, "worker"))
     file = statistics.read(newest_intact(services, run_id).data, "the file")
     with services.sessions.read() as session:
-        (found,) = records(session, [run_id], last=False)
-        (some,) = records(session, [run_id], last=True)
+        question = of_runs(session, [run_id], "")
+        (found,) = records(session, question, last=False)
+        (some,) = records(session, question, last=True)
         assert session.get_one(Run, run_id).evaluations == found.evaluations[-1]
     for name in ("evaluations", *CORRECTED):
         np.testing.assert_array_equal(found.curves[name], file.curves[name])
