@@ -74,6 +74,36 @@ def test_a_replay_whose_renderer_died_is_asked_for_again(services, worker):
     assert not services.jobs.renderings.started_job_registry.get_job_ids()
 
 
+def test_a_job_that_was_lost_while_it_was_taken_is_failed_and_may_be_asked_for_again(
+    services, worker, monkeypatch
+):
+    """Redis has moved it, and the answer, or whoever asked, is gone."""
+    monkeypatch.setattr(loop, "CLEAN_SECONDS", 0)
+    enqueue(services, CREATURE)
+    queue = services.jobs.renderings
+    moved = services.redis.lmove(queue.key, queue.intermediate_queue.key)
+    assert not queue.count
+
+    def cleaned():
+        turns = iter([False, False, True])
+        monkeypatch.setattr(loop, "stop_requested", lambda: next(turns))
+        loop.serve(worker, may_work=lambda: False)
+
+    monkeypatch.setattr(loop, "PAUSE_SECONDS", 0)
+    cleaned()
+    enqueue(services, CREATURE)  # Somebody may be about to begin it.
+    assert not queue.count
+    seen = queue.intermediate_queue.get_first_seen_key(moved.decode())
+    services.redis.set(seen, time.time() - 61)
+    cleaned()
+    with pytest.raises(RenderingFailed):
+        enqueue(services, CREATURE)
+    assert not services.redis.exists(queue.intermediate_queue.key)
+    services.jobs.remove(moved.decode())  # As Redis does after a minute.
+    enqueue(services, CREATURE)
+    assert queue.count == 1
+
+
 def take_and_die(services):
     """Take a rendering job, as a renderer that dies during it."""
     queue = services.jobs.renderings

@@ -19,6 +19,8 @@ from microcosmos_server.core.processes import stop_requested
 
 DEQUEUE_SECONDS = 1
 """Longest time before an idle worker notices a request to stop."""
+CLEAN_SECONDS = 30.0
+"""Seconds after which jobs are looked for that were lost while they were taken."""
 PAUSE_SECONDS = 1.0
 """Pause after an error of Redis or the database."""
 
@@ -27,8 +29,12 @@ log = logging.getLogger(__name__)
 
 def serve(worker: BaseWorker, may_work: Callable[[], bool] = lambda: True) -> None:
     """Carry out jobs until the process has to stop, as long as it may work."""
+    cleaned = time.monotonic()
     while not stop_requested():
         with logging_outages():
+            if time.monotonic() > cleaned + CLEAN_SECONDS:
+                cleaned = time.monotonic()
+                end_lost(worker)
             if may_work():
                 take_one(worker)
             else:
@@ -48,6 +54,16 @@ def take_one(worker: BaseWorker) -> None:
         )
         if taken:
             worker.execute_job(*taken)
+
+
+def end_lost(worker: BaseWorker) -> None:
+    """Fail the jobs that somebody has taken and, for more than a minute, not begun.
+
+    Redis has moved them when its answer is lost or a process dies. They would count as queued
+    for ever, and so be asked for in vain.
+    """
+    for queue in worker.queues:
+        queue.intermediate_queue.cleanup(worker, queue)
 
 
 @contextmanager

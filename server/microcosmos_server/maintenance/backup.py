@@ -18,6 +18,7 @@ from psycopg.conninfo import make_conninfo
 from pydantic import BaseModel, ValidationError
 from sqlalchemy import Engine, delete, inspect, select, text, update
 
+from microcosmos.archive.atomic import sync_folder
 from microcosmos.version import VERSION
 
 from ..core import processes
@@ -142,10 +143,13 @@ def make(services: Services, folder: Path) -> Backup:
             made = _copy_all(services, dump, copies)
             superseded = _superseded(folder, made)
             part.write_text(made.model_dump_json(indent=1))
+            for file in (dump, part):
+                _sync(file)
         except BaseException:
             dump.unlink(missing_ok=True)
             raise
         part.replace(folder / MANIFEST)  # At once: until now the earlier backup counts.
+        sync_folder(folder)  # A power cut must not leave the one without the other.
     for file in superseded:
         file.unlink(missing_ok=True)
     return made
@@ -163,7 +167,14 @@ def _superseded(folder: Path, made: Backup) -> list[Path]:
         return [folder / last.dump]
     if last:
         shutil.copyfile(folder / MANIFEST, folder / COMPLETE)
+        _sync(folder / COMPLETE)
     return []
+
+
+def _sync(path: Path) -> None:
+    """Return once a file is on the disk."""
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
 
 
 def _open(services: Services, folder: Path) -> Artifacts:

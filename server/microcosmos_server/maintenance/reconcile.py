@@ -91,9 +91,9 @@ def take_turn(services: Services) -> bool:
 TIMES = (
     *(InstallationState.seen_at, InstallationState.passed_at),
     *(InstallationState.reachable_since, Worker.heartbeat_at, Run.heartbeat_at),
-    *(Run.requested_at, Run.released_at, Notification.due_at),
+    *(Run.requested_at, Run.released_at, Run.queued_at, Notification.due_at),
 )
-"""The times from which the server counts seconds."""
+"""The times from which the server counts seconds, and by which runs wait their turn."""
 
 
 def _catch_up(session: Session) -> None:

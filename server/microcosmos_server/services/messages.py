@@ -25,8 +25,8 @@ STREAM_BYTES = 100_000_000
 stay. The elites of one generation may have megabytes, and Redis keeps all in memory."""
 RESET = "reset"
 """The kind of an event that tells clients to fetch everything."""
-WAITING = 10_000
-"""Messages that wait for the thread that sends them; more are dropped."""
+WAITING, WAITING_BYTES = 10_000, 64_000_000
+"""Messages that wait for the thread that sends them, and their length; more are dropped."""
 SILENT_SECONDS = 5.0
 """Seconds for which messages are dropped after Redis did not answer."""
 END_SECONDS = 2.0
@@ -50,6 +50,7 @@ class Messenger:
         self._lock, self._delivering = Lock(), Lock()
         self._thread: Thread | None = None
         self._lost = False
+        self._bytes = 0
         self._silent_until = 0.0
         _MESSENGERS.add(self)
 
@@ -58,10 +59,15 @@ class Messenger:
             if self._thread is None:
                 self._thread = Thread(target=self._work, name="messages", daemon=True)
                 self._thread.start()
-        try:
-            self._waiting.put_nowait(command)
-        except Full:
-            self._lost = True
+            if self._bytes > WAITING_BYTES:
+                self._lost = True
+                return
+            try:
+                self._waiting.put_nowait(command)
+            except Full:
+                self._lost = True
+            else:
+                self._bytes += _length(command)
 
     def flush(self, seconds: float = END_SECONDS) -> None:
         """Wait until all commands are sent or dropped, or for some seconds."""
@@ -88,6 +94,8 @@ class Messenger:
             with self._delivering:
                 self._deliver(command)
             if command:
+                with self._lock:
+                    self._bytes -= _length(command)
                 self._waiting.task_done()
 
     def _deliver(self, command: Command | None) -> None:
@@ -108,6 +116,10 @@ class Messenger:
             self._silent_until = time.monotonic() + SILENT_SECONDS
         except Exception:  # Without its thread nothing would be sent any more.
             log.exception("a message was not sent")
+
+
+def _length(command: Command) -> int:
+    return sum(len(part) for part in command if isinstance(part, str))
 
 
 _MESSENGERS = WeakSet[Messenger]()

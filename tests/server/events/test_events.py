@@ -205,12 +205,14 @@ async def has_all(services, last):
     return found
 
 
-def test_only_who_missed_trimmed_events_is_reset(address, services, flush, published):
+def test_only_who_missed_trimmed_events_is_reset(address, services, flush):
     """All events were trimmed: one client has none of them, others some and all."""
     flush()
-    for _ in range(3):
-        services.events.publish("run", uuid4(), {})
-    published()
+    with stream(address) as found:  # The server has read them before they are trimmed.
+        next(found)
+        for _ in range(3):
+            services.events.publish("run", uuid4(), {})
+        take(found, 3)
     ids = [one.decode() for one, _ in services.redis.xrange(services.events.stream)]
     services.redis.xtrim(services.events.stream, maxlen=0, approximate=False)
     for last in ("0-0", ids[1]):
@@ -292,6 +294,19 @@ def test_nobody_waits_for_a_frozen_redis_and_clients_learn_of_the_loss(
                 break
         assert "reset" in kinds
         here.close()
+
+
+def test_long_messages_are_dropped_before_they_fill_the_memory(frozen, services, monkeypatch):
+    monkeypatch.setattr(messages, "WAITING_BYTES", 3000)
+    url, freeze = frozen
+    here = connect(services.settings.model_copy(update={"redis_url": url}))
+    with freeze():
+        for number in range(20):
+            here.events.publish("run", uuid4(), {"number": number, "long": "x" * 1000})
+        assert here.events.messenger._waiting.qsize() <= 4
+    here.events.messenger.flush(20)
+    here.close()
+    assert here.events.messenger._bytes == 0
 
 
 def test_a_loss_is_told_though_nothing_follows(frozen, services, monkeypatch):

@@ -2,6 +2,7 @@
 
 import errno
 import json
+import os
 import shutil
 import sqlite3
 from pathlib import Path
@@ -52,6 +53,28 @@ def test_a_later_backup_copies_what_is_new(services, running, attempt, record, t
     assert before.items() <= after.items()
     assert dumps(tmp_path) == [made.dump]
     assert backup.read(tmp_path) == made
+
+
+def test_a_backup_is_on_the_disk_before_the_earlier_one_is_deleted(
+    services, running, tmp_path, monkeypatch
+):
+    """Else a power cut could leave neither."""
+    earlier, done = backup.make(services, tmp_path), []
+    sync, unlink = os.fsync, Path.unlink
+
+    def note_sync(opened):
+        done.append(Path(f"/proc/self/fd/{opened}").resolve().name)
+        sync(opened)
+
+    def note_unlink(path, **options):
+        done.append(f"deleted {path.name}")
+        unlink(path, **options)
+
+    monkeypatch.setattr(os, "fsync", note_sync)
+    monkeypatch.setattr(Path, "unlink", note_unlink)
+    made = backup.make(services, tmp_path)
+    expected = [made.dump, f"{MANIFEST}.part", tmp_path.name, f"deleted {earlier.dump}"]
+    assert [one for one in done if one in expected] == expected
 
 
 @pytest.mark.parametrize("unreadable", [False, True])

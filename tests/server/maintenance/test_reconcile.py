@@ -119,7 +119,7 @@ def test_a_clock_that_is_set_back_stops_nothing(
     alive("worker", "busy")
     with services.sessions.read() as session:
         ahead, before = ago(session, -3600), ago(session, -3600 + 100)
-    update_rows(Run, heartbeat_at=ahead)
+    update_rows(Run, heartbeat_at=ahead, queued_at=ahead)
     update_rows(Worker, heartbeat_at=ahead)
     state = {"reconciled_at": ahead, "seen_at": ahead, "passed_at": ahead}
     update_rows(InstallationState, **state, reachable_since=before)
@@ -133,6 +133,7 @@ def test_a_clock_that_is_set_back_stops_nothing(
         assert max(state.reconciled_at, state.passed_at, state.reachable_since) <= moment
         assert session.get_one(Worker, "worker").heartbeat_at <= moment
     assert row().heartbeat_at <= moment
+    assert row().queued_at <= moment, "later runs would go before it"
 
 
 def test_a_silent_workers_run_is_queued_again(services, attempt, flush, row, record, silence):
