@@ -220,11 +220,20 @@ class Attempt:
         self.saved_at = time.monotonic() if self.generation else -math.inf
         self.unsaved = ""
         """Why the last checkpoint could not be written."""
+        self.device: str | None = None
 
     def record_device(self, device: str, sinks: Sequence[str] = ()) -> None:
-        """Record the kind of device that computes the run from here on, and its sinks."""
+        """Record the kind of device that computes the run from here on, and its sinks.
+
+        Where the run may have changed its kind, the next checkpoint records it: if the attempt
+        ends before, the file goes on with the bits of the earlier one.
+        """
+        self.device = device
         copied = f" Curves and files also go to {', '.join(sinks)}." if sinks else ""
-        self._update(f"Computing on {device}.{copied}", device=device, sinks=list(sinks))
+        known: dict[str, Any] = (
+            {} if self.other_device and self.generation else {"device": device}
+        )
+        self._update(f"Computing on {device}.{copied}", sinks=list(sinks), **known)
 
     @retried
     def initial(self) -> list[dict[str, Any]]:
@@ -375,6 +384,7 @@ class Attempt:
             if generation > run.checkpoint_generation:
                 run.checkpoint_generation = generation
                 run.attempts_without_checkpoint = 0
+                run.device = self.device or run.device
                 run.warning = None
             text = f"Checkpoint of generation {generation} written, {size(len(data))}."
             log.note(session, run, text, kind=log.SAVED)

@@ -149,6 +149,26 @@ def test_another_kind_of_device_continues_after_the_owners_patience(
     assert claim(services, UUID(begun), "processor").other_device
 
 
+def test_a_run_whose_attempt_on_another_kind_leaves_no_checkpoint_keeps_its_kind(
+    services, api, begun, taken, update_rows
+):
+    """Its file has the bits of that kind, and other devices refuse it."""
+    update_rows(Run, device_patience=0.0)
+    for saves, kind in ((False, GPU), (True, CPU)):
+        assert taken("processor", device_kinds=[CPU]) == begun
+        attempt = claim(services, UUID(begun), "processor")
+        attempt.record_device(CPU)
+        attempt.record(reports.report(2), 1.0)
+        if saves:
+            attempt.save(2, b"state")
+        attempt.requeue()
+        assert api.get(f"runs/{begun}").json()["device"] == kind
+        update_rows(Run, worker=None)
+    update_rows(Run, device_patience=3600.0)
+    assert taken("graphics", device_kinds=[GPU]) is None
+    assert taken("processor", device_kinds=[CPU]) == begun
+
+
 @pytest.mark.parametrize("computing", [False, True])
 def test_patience_begins_anew_when_a_cancellation_is_taken_back(
     services, api, begun, taken, update_rows, computing
