@@ -23,6 +23,7 @@ from ..runs import deps
 from ..runs.deps import RunDep
 from ..services.services import ServicesDep, SessionDep
 from ..storage import ranges, segments
+from ..storage.segments import LARGEST
 from ..tables import Artifact, Result, Run
 from . import elites, reading
 from . import measures as recorded_measures
@@ -35,10 +36,6 @@ UNCHANGED: Answers = {304: {"description": "Unchanged"}}
 
 # About 10 MB.
 POSE_CELLS = 1000
-
-# The file is read and converted in memory, as for exports (`exports/routes.py`).
-LARGEST = 200_000_000
-"""Bytes of a run's file that the server converts; `archive.h5` takes any."""
 
 
 @router.get("/archive", **archive_answers(ArchiveRead), dependencies=[MAY_READ_SHARED])

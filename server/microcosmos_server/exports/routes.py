@@ -41,6 +41,7 @@ from ..phylogenies import births
 from ..runs.deps import find_run
 from ..services.services import Services, ServicesDep
 from ..storage import segments
+from ..storage.segments import LARGEST
 from ..tables import Artifact, Run
 
 TREES = {
@@ -123,9 +124,6 @@ def _extra(session: Session, run: Run, file: RunFile) -> Extra:
 router = APIRouter(prefix="/runs/{run_id}", tags=["exports"])
 
 ZIP = "application/zip"
-# The file is read and converted in memory.
-LARGEST = 200_000_000
-"""Bytes of a run's file that the server exports; `microcosmos export` takes any."""
 
 
 def _real(

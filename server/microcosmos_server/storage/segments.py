@@ -21,6 +21,9 @@ from ..tables import Artifact
 from .artifacts import Artifacts, StoredFile
 
 FORMAT = "microcosmos-checkpoint/1"
+# It is read and converted in memory.
+LARGEST = 200_000_000
+"""Bytes of a run's file that the server converts. People may download and export any."""
 VERIFIED = 8
 """Segments that each save reads again. All later checkpoints name a segment, so one that rots
 on its disk must be found while a run still has its bytes."""
