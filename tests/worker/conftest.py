@@ -13,6 +13,7 @@ from microcosmos_server.settings import Settings
 from microcosmos_server.tables import Run
 from microcosmos_worker.device import Device
 from microcosmos_worker.heartbeats import Heartbeats
+from microcosmos_worker.plugins import PluginWatcher
 from microcosmos_worker.readiness import Readiness
 from microcosmos_worker.supervisor import Supervisor
 
@@ -56,19 +57,29 @@ def row(services, run_id):
 
 
 @pytest.fixture
-def heartbeat(services):
-    return Heartbeats(
-        services.sessions, "worker", Device("some device", 8 << 30, {}, "0"), lease=20
-    )
+def watcher():
+    """A watcher of no plug-ins."""
+    return PluginWatcher(Settings(modules=""), 0.01)
 
 
 @pytest.fixture
-def busy(services, heartbeat, monkeypatch, tmp_path):
+def heartbeat(services, watcher):
+    device = Device("some device", 8 << 30, {}, "0")
+    return Heartbeats(services.sessions, "worker", device, lease=20, plugins=watcher)
+
+
+@pytest.fixture
+def busy(services, heartbeat, watcher, monkeypatch, tmp_path):
     """A supervisor that computes on the processor, and that has taken the run."""
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path))
-    environment = {}
+    used = services.settings
+    environment = {
+        "MICROCOSMOS_DATA": str(used.data),
+        "MICROCOSMOS_REDIS_URL": used.redis_url,
+        "MICROCOSMOS_REDIS_PREFIX": used.redis_prefix,
+    }
     readiness = Readiness(services, Device("a processor", 8 << 30, environment))
-    return Supervisor(services, "worker", environment, heartbeat, readiness)
+    return Supervisor(services, "worker", environment, heartbeat, readiness, watcher)
 
 
 @pytest.fixture

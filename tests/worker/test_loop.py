@@ -23,7 +23,7 @@ from microcosmos_server.local import process_tree
 from microcosmos_server.renderings.storage import RenderingFailed, enqueue
 from microcosmos_server.tables import CANCELLED, Run, Worker
 from microcosmos_server.workers import registry
-from microcosmos_worker import loop, supervisor
+from microcosmos_worker import loop, readiness, supervisor
 from microcosmos_worker.device import Device
 from microcosmos_worker.heartbeats import HEARTBEATS_AFTER_END, Heartbeats, Usage
 from microcosmos_worker.renderer import mark_stopped, retry_interrupted
@@ -177,14 +177,38 @@ def test_a_job_that_ignores_the_stop_is_killed_at_no_cost(
 
 @pytest.mark.long
 def test_a_job_that_dies_before_its_claim_is_counted_with_its_last_words(
-    run_id, row, busy, next_run, capfd
+    run_id, row, busy, next_run, capfd, monkeypatch
 ):
-    busy.environment["MICROCOSMOS_DATABASE_URL"] = "sqlite:////dev/null/none"
+    def python(module, *arguments):
+        dies = [sys.executable, "-c", "raise MemoryError('no room')"]
+        return dies if module.endswith("job_process") else started(module, *arguments)
+
+    started = processes.python
+    monkeypatch.setattr(processes, "python", python)
     busy.carry_out(next_run())
     assert (row().status, row().attempts_without_checkpoint) == ("queued", 1)
     assert "its process ended with status 1" in row().error
-    assert "/dev/null" in row().error_details
+    assert "no room" in row().error_details
     assert "Traceback" in capfd.readouterr().err, "the worker's log has all of it"
+
+
+@pytest.mark.long
+def test_a_job_that_cannot_use_the_database_blames_no_run(
+    run_id, row, busy, next_run, tmp_path, capfd, monkeypatch
+):
+    """It makes a new connection, and runs the code that is installed now."""
+    assert busy.readiness.check()
+    for url in ("sqlite:////proc/none", f"sqlite:///{tmp_path / 'without_tables.db'}"):
+        busy.environment["MICROCOSMOS_DATABASE_URL"] = url
+        busy.carry_out(next_run())
+        assert (row().status, row().attempts_without_checkpoint) == ("queued", 0)
+        assert (row().worker, row().error) == (None, None)
+        assert busy.readiness.problem.kind == "database"
+        assert not busy.readiness.check(), "no run is taken for a while"
+        assert "is not begun: (sqlite3.OperationalError)" in capfd.readouterr().err
+    monkeypatch.setattr(readiness.time, "monotonic", lambda now=time.monotonic: now() + 61)
+    assert busy.readiness.check()
+    assert busy.readiness.problem is None
 
 
 @pytest.mark.parametrize(

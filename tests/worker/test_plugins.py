@@ -3,13 +3,20 @@
 import json
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 from queue import Queue
+from types import SimpleNamespace
 
 import pytest
 
 from microcosmos_server.settings import Settings
-from microcosmos_worker import plugins
+from microcosmos_server.tables import Worker
+from microcosmos_worker import jobs, plugins, supervisor
+from microcosmos_worker.device import Device
+from microcosmos_worker.heartbeats import Heartbeats
+from microcosmos_worker.readiness import Readiness
+from microcosmos_worker.supervisor import Supervisor
 
 ROOT = Path(__file__).parents[2]
 GOOD = """
@@ -74,6 +81,59 @@ def test_a_changed_file_is_listed_again(settings, monkeypatch):
     assert asked.empty()
 
 
+def test_a_worker_takes_no_run_until_it_has_reported_the_files_as_they_are(
+    services, settings, run_id, monkeypatch
+):
+    """Runs of the version before would be paused, and wait for a person."""
+    chosen = settings(mine=GOOD)
+    watcher = plugins.PluginWatcher(chosen, interval=1000)
+    device = Device("a processor", 8 << 30, {})
+    beats = Heartbeats(services.sessions, "worker", device, 20, plugins=watcher)
+    busy = Supervisor(services, "worker", {}, beats, Readiness(services, device), watcher)
+    monkeypatch.setattr(busy.readiness, "check", lambda: True)
+    monkeypatch.setattr(supervisor, "PAUSE_SECONDS", 0.01)
+    listed, taken = [], []
+
+    def versions():
+        with services.sessions.read() as session:
+            return [one["source"] for one in session.get_one(Worker, "worker").plugins]
+
+    def carry_out(run):
+        taken.append(run)
+        listed.append(versions())
+        monkeypatch.setattr(supervisor, "stop_requested", lambda: True)
+
+    monkeypatch.setattr(busy, "carry_out", carry_out)
+    beats.beat()
+    before = versions()
+    plugins.files(chosen)[0].write_text(f"{GOOD}# Changed.")
+    watcher.start()
+    beats.start()
+    try:
+        busy.serve()
+    finally:
+        watcher.end()
+        beats.end()
+    assert taken == [run_id]
+    assert listed == [[sha256(f"{GOOD}# Changed.".encode()).hexdigest()]] != [before]
+
+
+def test_a_renderer_loads_a_changed_file(settings, monkeypatch):
+    chosen = settings(mine=GOOD)
+    monkeypatch.setattr(jobs, "services", lambda: SimpleNamespace(settings=chosen))
+    monkeypatch.setattr(jobs, "_loaded", None)
+    loaded = []
+    monkeypatch.setattr(
+        plugins, "load", lambda _: loaded.append(plugins.files(chosen)[0].read_text())
+    )
+    monkeypatch.setattr("microcosmos.device.prepare", lambda: loaded.append("device"))
+    for text in (GOOD, f"{GOOD}# Changed."):
+        plugins.files(chosen)[0].write_text(text)
+        jobs.prepare_job()
+        jobs.prepare_job()
+    assert loaded == ["device", GOOD, f"{GOOD}# Changed."]
+
+
 CARRY_OUT = """
 import json, sys
 from types import SimpleNamespace
@@ -89,6 +149,8 @@ for spec in json.loads(sys.argv[1]):
         record_device=lambda device, sinks: None,
         restore=lambda: None,
         initial=lambda: [],
+        listed_plugins=lambda: json.loads(sys.argv[2]),
+        requeue=lambda: outcome.update(queued=True),
         pause_until_resumed=lambda text: outcome.update(aside=text),
         refuse=lambda text: outcome.update(refused=text),
     )
@@ -106,8 +168,30 @@ def test_a_run_on_the_wrong_worker_is_paused_or_refused(settings):
     for source in ("a" * 64, stick["source"]):
         version = {"source": source, "title": "A stick"}
         specs.append({**spec, "body": {"builder": "mine.stick", "plugin": version}})
-    command = [sys.executable, "-c", CARRY_OUT, json.dumps(specs)]
-    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
-    outcome = json.loads(done.stdout.splitlines()[-1])
+    outcome = outcome_of(specs, [stick])
+    assert "queued" not in outcome
     assert "must be of version aaaaaaaaaaaa, got version" in outcome["aside"]
     assert "mine.stick must return a body, got int" in outcome["refused"]
+
+
+def test_a_run_whose_plug_in_was_edited_a_moment_ago_waits(settings):
+    """It waits for a worker with its version, as if it had not been taken."""
+    (stick,) = plugins.list_plugins(settings(mine=GOOD)).plugins
+    version = {"source": stick["source"], "title": "A stick"}
+    body = {"builder": "mine.stick", "plugin": version}
+    spec = {"experiment": "quality-diversity", "task": {"steps": 400}, "body": body}
+    settings(mine=f"{GOOD}# Changed.")
+    assert outcome_of([spec], [stick]) == {"queued": True}
+    # A file that is as it was listed, and does not load, is nothing to wait for.
+    changed = {**stick, "source": sha256(f"{GOOD}# Changed.".encode()).hexdigest()}
+    assert "must be of version" in outcome_of([spec], [changed])["aside"]
+    # What comes from an installed package is never listed anew.
+    other = {**stick, "name": "package.stick"}
+    assert "must be of version" in outcome_of([spec], [other])["aside"]
+
+
+def outcome_of(specs, listed):
+    """Carry out runs on a worker that has listed plug-ins, and return what it did with them."""
+    command = [sys.executable, "-c", CARRY_OUT, json.dumps(specs), json.dumps(listed)]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
+    return json.loads(done.stdout.splitlines()[-1])

@@ -49,6 +49,23 @@ def test_a_self_test_is_believed_until_something_has_changed(services, busy, mon
     assert not Readiness(services, Device("a processor", 8 << 30, {})).check()
 
 
+def test_a_worker_tests_itself_again_although_another_has_passed_on_its_device(
+    services, monkeypatch, tmp_path
+):
+    """They share the record of the device, with which they would start."""
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path))
+    two = [Readiness(services, Device("a processor", 8 << 30, {})) for _ in range(2)]
+    tested = []
+    fault = ([], Problem("self-test", "memory"))
+    monkeypatch.setattr(readiness, "_self_test", lambda one: tested.append(one) or fault)
+    assert [one.check() for one in two] == [False, False]
+    fault = (["a cpu"], None)
+    monkeypatch.setattr(readiness.time, "monotonic", lambda now=time.monotonic: now() + 61)
+    assert [one.check() for one in two] == [True, True]
+    assert [one.problem for one in two] == [None, None]
+    assert len(tested) == 4
+
+
 def test_a_self_test_ends_when_its_worker_has_to_stop(busy, monkeypatch):
     monkeypatch.setattr(processes, "_stop_requested", True)
     began = time.monotonic()

@@ -14,7 +14,7 @@ from microcosmos.build import build
 from microcosmos.build.parts import terms_of
 from microcosmos.cluster import over
 from microcosmos.device import prepare
-from microcosmos.experiments import Experiment, OtherDevice, Stopped
+from microcosmos.experiments import Experiment, OtherDevice, OtherSpec, Stopped
 from microcosmos.experiments.evolution import Evolution
 from microcosmos.plugins import Broken, Missing
 from microcosmos.search.parts.breeding import UnknownCreature
@@ -24,7 +24,7 @@ from microcosmos.spec import invalid_fields, parse
 from microcosmos_server.attempts.attempt import Attempt, begin_choices, forget_choices
 from microcosmos_server.settings import Settings
 
-from .plugins import load
+from .plugins import have_changed, load
 
 
 def carry_out(attempt: Attempt) -> None:
@@ -34,7 +34,11 @@ def carry_out(attempt: Attempt) -> None:
     try:
         compute(attempt)
     except Missing as error:
-        attempt.pause_until_resumed(str(error))
+        # Edited since the worker listed it: the worker lists it anew before it takes a run.
+        if have_changed(attempt.services.settings, attempt.listed_plugins()):
+            attempt.requeue()
+        else:
+            attempt.pause_until_resumed(str(error))
     except Broken as error:
         attempt.refuse(str(error))
     except ValidationError as error:  # Only a worker can validate what plug-ins declare.
@@ -56,6 +60,9 @@ def compute(attempt: Attempt) -> None:
     except OtherDevice as error:
         # The schedule did not know the recorded kind of device; now `device` has it.
         attempt.pause_until_resumed(str(error), device=error.recorded)
+        return
+    except OtherSpec as error:  # As of another version of the program.
+        attempt.pause_until_resumed(f"It cannot go on from its checkpoint: {error}")
         return
     if isinstance(experiment, Evolution):
         attempt.segments.growing = experiment.growing

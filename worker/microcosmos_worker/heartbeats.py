@@ -187,6 +187,8 @@ class Heartbeats(threading.Thread):
             xid_errors=errors - self._errors_reported,
         )
         self._errors_reported = errors
+        if self._plugins:
+            self._plugins.reported = plugins
 
     def _end_lost_job(self, watch: Watch, lease: LeaseState) -> None:
         """Kill the job if another worker has its run, or if the run ended some time ago."""

@@ -1,10 +1,11 @@
 """The process of one job: `python -m microcosmos_worker.job_process RUN WORKER`."""
 
+import logging
 import os
 import sys
 from uuid import UUID
 
-from microcosmos_server.attempts.claim import NothingComputed, claimed
+from microcosmos_server.attempts.claim import UNCLAIMED, NothingComputed, Unclaimed, claimed
 from microcosmos_server.core import logs
 from microcosmos_server.core.processes import (
     end_with_parent,
@@ -13,6 +14,8 @@ from microcosmos_server.core.processes import (
 )
 from microcosmos_server.services.services import connect
 from microcosmos_server.settings import Settings
+
+log = logging.getLogger(__name__)
 
 NICE = 10
 """Niceness of a job, so that the page and replays respond first."""
@@ -34,6 +37,9 @@ def main(run_id: str, worker: str) -> None:
 
                 os.nice(NICE)  # After the imports, for which the page waits.
                 carry_out(attempt)
+    except Unclaimed as error:
+        log.error("Run %s is not begun: %s", run_id, error.__cause__)
+        sys.exit(UNCLAIMED)
     except NothingComputed:
         sys.exit(1)  # The supervisor tests whether the host is at fault.
 

@@ -24,13 +24,23 @@ def services() -> Services:
     return connect(Settings())
 
 
-@cache
-def prepare_once() -> None:
-    """Prepare the device and load plug-ins, at the first call in a process."""
-    from microcosmos.device import prepare
+_loaded: tuple[str | None, ...] | None = None
+"""Digests of the files from which this process has loaded plug-ins."""
 
-    prepare()
-    plugins.load(services().settings)
+
+def prepare_job() -> None:
+    """Prepare the device and load plug-ins, again when a file has changed.
+
+    A renderer lives for weeks, and gets creatures of each version.
+    """
+    global _loaded
+    if (now := plugins.digests(services().settings)) != _loaded:
+        if _loaded is None:
+            from microcosmos.device import prepare
+
+            prepare()
+        plugins.load(services().settings)
+        _loaded = now
 
 
 @contextmanager
@@ -48,7 +58,7 @@ def noting_failure() -> Iterator[None]:
 
 @noting_failure()
 def render(creature: str, kind: str = REPLAY) -> None:
-    prepare_once()
+    prepare_job()
     from .renderings import make
 
     renderings.save(services(), creature, kind, make(services(), creature, kind))
@@ -57,7 +67,7 @@ def render(creature: str, kind: str = REPLAY) -> None:
 @noting_failure()
 def first_creature(name: str, spec: dict[str, Any], number: int) -> None:
     """Keep the inputs of the evaluation of a creature of a spec's first generation."""
-    prepare_once()
+    prepare_job()
     from .renderings import first
 
     services().jobs.keep_first(name, first(spec, number))

@@ -78,26 +78,56 @@ class PluginWatcher(threading.Thread):
     def __init__(self, settings: Settings, interval: float):
         super().__init__(name="plug-ins", daemon=True)
         self._settings, self._interval = settings, interval
-        self._ended = threading.Event()
-        self._digests = self._read_digests()
+        self._due = threading.Event()
+        self._ended = False
+        self._digests = digests(settings)
         self.report = list_plugins(settings)
+        self.reported: PluginReport | None = None
+        """The report that the database has."""
 
     def run(self) -> None:
-        while files(self._settings) and not self._ended.wait(self._interval):
-            if (now := self._read_digests()) != self._digests:
+        while files(self._settings):
+            self._due.wait(self._interval)
+            self._due.clear()
+            if self._ended:
+                return
+            if (now := digests(self._settings)) != self._digests:
                 self._digests, self.report = now, list_plugins(self._settings)
 
-    def end(self) -> None:
-        self._ended.set()
+    def is_current(self) -> bool:
+        """Return whether the database has the plug-ins of the files as they are now.
 
-    def _read_digests(self) -> tuple[str | None, ...]:
-        return tuple(map(_digest, files(self._settings)))
+        If a file has changed, the report is renewed at once.
+        """
+        if digests(self._settings) != self._digests:
+            self._due.set()
+            return False
+        return self.reported is self.report
+
+    def end(self) -> None:
+        self._ended = True
+        self._due.set()
+
+
+def digests(settings: Settings) -> tuple[str | None, ...]:
+    """Return the SHA-256 of each module's file; None for one that cannot be read."""
+    return tuple(map(_digest, files(settings)))
 
 
 def _digest(file: Path) -> str | None:
     with suppress(OSError):
         return sha256(file.read_bytes()).hexdigest()
     return None
+
+
+def have_changed(settings: Settings, listed: Sequence[dict[str, Any]]) -> bool:
+    """Return whether a module's file has changed since its worker listed its plug-ins."""
+    stems = {file.stem for file in files(settings)}
+    present = set(digests(settings))
+    return any(
+        one["name"].partition(".")[0] in stems and one["source"] not in present
+        for one in listed
+    )
 
 
 def main() -> None:

@@ -87,6 +87,8 @@ class Readiness:
         self._record = _record(services, device)
         self._test_at = 0.0
         self._device_problem: Problem | None = None
+        self._database_problem: Problem | None = None
+        self._database_retry_at = 0.0
         self.device_kinds: list[str] = []
         """Kinds of device whose results this one repeats; none before a self-test succeeds."""
 
@@ -94,16 +96,30 @@ class Readiness:
     def problem(self) -> Problem | None:
         """Return the reason why the worker takes no run, if there is one."""
         untested = Problem("untested", "It tests itself before its first run")
-        installation = self._installation.problem
+        installation = self._database_problem or self._installation.problem
         return self._device_problem or (installation if self.device_kinds else untested)
 
     def check(self) -> bool:
         """Return True if the worker may take a run."""
-        if not self.device_kinds:
+        if time.monotonic() >= self._database_retry_at:
+            self._database_problem = None
+        # One that has failed has to succeed itself, whatever others on the device find.
+        if not self.device_kinds and self._device_problem is None:
             self.device_kinds = _read(self._record)
         if not self.device_kinds and time.monotonic() >= self._test_at:
             self.test_device()
-        return bool(self.device_kinds) and self._installation.is_good()
+        good = self._database_problem is None and self._installation.is_good()
+        return bool(self.device_kinds) and good
+
+    def note_unclaimed(self) -> None:
+        """Note that the process of a job could not use the database; wait before the next.
+
+        A new process makes new connections and runs the code that is installed now, so it may
+        fail where this one does not.
+        """
+        text = "The processes that it starts cannot use the database: its log says why"
+        self._database_problem = Problem("database", text)
+        self._database_retry_at = time.monotonic() + RETEST_SECONDS
 
     def test_device(self) -> bool:
         """Compute a few creatures whose numbers are known; return whether that succeeds.

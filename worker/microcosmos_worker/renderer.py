@@ -21,7 +21,7 @@ from microcosmos_server.services.services import connect
 from microcosmos_server.settings import from_environment
 
 from . import loop
-from .jobs import prepare_once
+from .jobs import prepare_job
 from .readiness import InstallationCheck
 
 WORKER_TTL = 120
@@ -66,12 +66,14 @@ def serve_queue(name: str) -> None:
     stopping = Event()
     note_stop_signals(stopping.set, interrupt=True)
     if name == "renderer":
-        prepare_once()
+        prepare_job()
     # Waiting for a job blocks for a while, and nobody waits for this process itself.
     services = connect(settings, patience=loop.DEQUEUE_SECONDS + 4.0)
     queue = services.jobs.audits if name == "auditor" else services.jobs.renderings
-    with loop.logging_outages():
-        retry_interrupted(services.jobs, queue)
+    while not stopping.is_set():
+        with loop.logging_outages():
+            retry_interrupted(services.jobs, queue)
+            break
     # A thread, since the signal may come in the midst of another talk with Redis.
     Thread(target=_mark_at_stop, args=(stopping, services.jobs, queue), daemon=True).start()
     unique = f"{name}-{socket.gethostname()}-{uuid4().hex[:8]}"

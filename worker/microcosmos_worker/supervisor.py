@@ -12,6 +12,7 @@ from uuid import UUID
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from microcosmos_server.attempts.claim import UNCLAIMED
 from microcosmos_server.attempts.leases import Progress, end_job, fail_job, progress
 from microcosmos_server.core import logs, processes
 from microcosmos_server.core.processes import note_stop_signals, stop_requested
@@ -49,9 +50,10 @@ class Supervisor:
         environment: dict[str, str],
         heartbeats: Heartbeats,
         readiness: Readiness,
+        plugins: PluginWatcher,
     ):
         self.services, self.name, self.environment = services, name, environment
-        self.heartbeats, self.readiness = heartbeats, readiness
+        self.heartbeats, self.readiness, self.plugins = heartbeats, readiness, plugins
         self.job: Popen[bytes] | None = None
         self.job_killed = False
         """The job was killed because it has its run no more."""
@@ -61,13 +63,16 @@ class Supervisor:
         """How the last job died; None unless it died by itself."""
         self.error_details: str | None = None
         """The last lines that this job wrote."""
+        self.unclaimed = False
+        """The last job could not use the database."""
 
     def serve(self) -> None:
         """Carry out runs until the process has to stop."""
         alarm = self.services.wake.listen()
         while not stop_requested():
             with logging_outages():
-                if not self.readiness.check():
+                # A run needs a version of each plug-in, and its process loads the files.
+                if not (self.readiness.check() and self.plugins.is_current()):
                     self.heartbeats.hurry()
                     time.sleep(PAUSE_SECONDS)
                 elif run_id := take(self.services, self.name):
@@ -79,7 +84,7 @@ class Supervisor:
     def carry_out(self, run_id: UUID) -> None:
         """Compute a run in a process, and return it to the queue if the process dies."""
         self.error, before = None, progress(self.services, run_id)
-        self.job_killed = False
+        self.job_killed = self.unclaimed = False
         logs.bind(run=str(run_id))
         try:
             if not stop_requested():
@@ -102,6 +107,8 @@ class Supervisor:
             fail_job(self.services, run_id, self.name, self.error, self.error_details)
         else:
             end_job(self.services, run_id, self.name, broken=bool(self.error))
+        if self.unclaimed:
+            self.readiness.note_unclaimed()
 
     def start(self, run_id: str) -> None:
         """Start the job's process."""
@@ -120,7 +127,8 @@ class Supervisor:
             if self.stop_sent_at and time.monotonic() - self.stop_sent_at > STOP_SECONDS:
                 self.job.kill()  # One block takes too long.
         self.job = None
-        if code and not self.job_killed:
+        self.unclaimed = code == UNCLAIMED
+        if code and not self.job_killed and not self.unclaimed:
             how = processes.exit_reason(code)
             log.warning("Run %s: its process %s", run_id, how)
             if not self.stop_sent_at:
@@ -167,7 +175,7 @@ def supervise(settings: Settings, index: int) -> None:
     heartbeats = Heartbeats(
         shared.sessions, name, found, settings.lease, labels, plugins, readiness
     )
-    worker = Supervisor(shared, name, found.environment, heartbeats, readiness)
+    worker = Supervisor(shared, name, found.environment, heartbeats, readiness, plugins)
     note_stop_signals(worker.stop_job, interrupt=True)
     log.info("Worker %s on %s", name, found.name)
     heartbeats.start()

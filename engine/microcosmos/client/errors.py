@@ -82,7 +82,6 @@ RUN: Kinds = {
 SWEEP: Kinds = {
     "id": (str,),
     "name": (str, type(None)),
-    "cases": (list,),
     "status_counts": (dict,),
     "total": NUMBER,
 }

@@ -16,8 +16,6 @@ class Sweep(Record):
     """A copy of the server's record; `refresh` reads it again."""
 
     NOUN, KINDS = "sweeps", SWEEP
-    cases = Field[list[dict[str, Any]]]()
-    """Each with its `values`, by the paths of fields, and the ids of its `runs`."""
     total = Field[int]()
     status_counts = Field[dict[str, int]]()
     """Number of runs by status."""
@@ -26,6 +24,13 @@ class Sweep(Record):
         name = f" {self.name!r}" if self.name else ""
         counts = counts_as_text(self.status_counts)
         return f"<Sweep {self.id[:8]}{name}: {self.total} runs, {counts}>"
+
+    @property
+    def cases(self) -> list[dict[str, Any]]:
+        """Return its cases: `values` by the paths of fields, and the ids of its `runs`."""
+        if "cases" not in self.record:  # Lists omit them.
+            self.refresh()
+        return self.record["cases"]
 
     @property
     def ended(self) -> bool:

@@ -25,6 +25,8 @@ POLL_SECONDS = 0.5
 """Time between two checks for helpers that have joined or left."""
 CONNECT_SECONDS = 10.0
 """Longest time for an answer of the scheduler."""
+CLOSE_SECONDS = 5.0
+"""Longest time for the end of a connection, which needs the scheduler's answer."""
 RETRY_SECONDS = 2.0
 """Time before a scheduler that did not answer is called again."""
 
@@ -102,7 +104,8 @@ class Connection:
 
     def close(self) -> None:
         self._ended.set()
-        self._thread.join(2 * CONNECT_SECONDS)
+        # Not for longer: a worker that has to stop has yet to write its checkpoint.
+        self._thread.join(CLOSE_SECONDS)
 
     def _keep(self) -> None:
         distributed, away = require("distributed", PACKAGE), False

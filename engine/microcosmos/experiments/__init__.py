@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 from ..archive.report import Report
 from ..search import Stopped
-from .resume_check import OtherDevice
+from .resume_check import OtherDevice, OtherSpec
 
 
 class Experiment(Protocol):
@@ -42,9 +42,9 @@ class Experiment(Protocol):
     def restore(self, data: bytes, *, other_device: bool = False) -> Any:
         """Return the state in a file of the same spec.
 
-        Raises `ValueError` for another spec or format, and its subclass `OtherDevice` for
-        another kind of device unless `other_device` allows it: from there on bits may differ,
-        and the file says so.
+        Raises `ValueError` for another format, and its subclasses `OtherSpec` for another spec,
+        and `OtherDevice` for another kind of device unless `other_device` allows it: from there
+        on bits may differ, and the file says so.
         """
         ...
 

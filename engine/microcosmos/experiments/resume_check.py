@@ -2,7 +2,14 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any
+
+from ..spec import parse
+
+
+class OtherSpec(ValueError):
+    """The file was computed for another spec than the run's."""
 
 
 class OtherDevice(ValueError):
@@ -19,10 +26,11 @@ def devices_of(
 ) -> tuple[str, ...]:
     """Return the kinds of device of a file and, last, the present one.
 
-    Raises `ValueError` for another spec, and `OtherDevice` for another kind of device unless
+    Raises `OtherSpec` for another spec, and `OtherDevice` for another kind of device unless
     `other_device` allows it.
     """
-    _refuse_other(*(dict(_values(json.loads(text))) for text in (attributes["spec"], spec)))
+    held, wanted = (dict(_values(_complete(text))) for text in (attributes["spec"], spec))
+    _refuse_other(held, wanted)
     devices = json.loads(attributes["device"])
     if devices[-1] != device and not other_device:
         raise OtherDevice(
@@ -31,6 +39,14 @@ def devices_of(
             devices[-1],
         )
     return tuple(devices if devices[-1] == device else [*devices, device])
+
+
+def _complete(text: str) -> Any:
+    """Return a spec with the defaults of fields that a later version has added."""
+    document = json.loads(text)
+    with suppress(ValueError):  # A plug-in may be here in another version only.
+        return parse(document).model_dump(mode="json")
+    return document
 
 
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
@@ -42,17 +58,15 @@ def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
     other = [path for path in paths if held.get(path, ...) != wanted.get(path, ...)]
     # Another version of a plug-in has its own message: loading the old version may help.
     if any(path.split(".")[-1] != "source" for path in other):
-        raise ValueError("`spec` in the file must be the run's own, got another")
+        raise OtherSpec("`spec` in the file must be the run's own, got another")
     if other:
         then, present = (values.get(other[0], "none") for values in (held, wanted))
-        raise ValueError(
+        raise OtherSpec(
             f"`{other[0]}` must be {then[:12]}, the version with which the run was computed, "
             f"got {present[:12]}: continue with that version, or begin a new run"
         )
     if now < before:
-        raise ValueError(
-            f"`search.generations` must be at least the file's {before}, got {now}"
-        )
+        raise OtherSpec(f"`search.generations` must be at least the file's {before}, got {now}")
 
 
 def _values(part: Any, path: str = "") -> Iterator[tuple[str, Any]]:

@@ -44,10 +44,13 @@ class ShownArchive:
     state: tuple[Any, ...]
     """With it, everything that an answer says is fixed."""
 
-    async def answer(self, read: Callable[[Session], HistoryRead]) -> Response:
+    async def answer(
+        self, read: Callable[[Session], HistoryRead], *asked: str | int | None
+    ) -> Response:
         """Return the archive that `read` reads, in the form that the request accepts.
 
-        The answer is made once for each state, over a connection of its own.
+        The answer is made once for each state and for what was `asked`, over a connection of
+        its own.
         """
         in_columns = accepts(self.request, "accept", columns.MEDIA_TYPE)
         media_type = columns.MEDIA_TYPE if in_columns else JSON
@@ -57,8 +60,7 @@ class ShownArchive:
                 found = read(session)
             return found.model_dump_json().encode() if media_type == JSON else _bytes(found)
 
-        query = sorted(self.request.query_params.multi_items())
-        tag = tag_of(self.state, self.request.scope["route"].path, query, media_type)
+        tag = tag_of(self.state, self.request.scope["route"].path, asked, media_type)
         headers = {"Vary": "Accept, Accept-Encoding"}
         return await respond(self.request, tag, make, media_type, headers)
 

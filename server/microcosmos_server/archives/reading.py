@@ -1,8 +1,10 @@
 """Read an archive, its history or a re-projection from the database."""
 
+from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import isfinite
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -76,11 +78,33 @@ def learned_of(services: Services, run: Run, file: Artifact | None) -> LearnedMe
     container = run.spec["archive"].get("container") or {}
     if container.get("kind") != "learned" or file is None:
         return None
-    try:
-        found = learned_axes(segments.read(services.artifacts, file))
-    except ValueError:  # It ended before any axes were learned.
-        return None
-    return LearnedMeasures(found, container["bins"])
+    found = _axes.get(services, file)
+    return None if found is None else LearnedMeasures(found, container["bins"])
+
+
+class _KeptAxes:
+    """Learned axes by the hash of their file, which may be large, and is read once."""
+
+    def __init__(self, number: int):
+        self._number = number
+        self._kept = OrderedDict[str, LearnedAxes | None]()
+        self._reading = Lock()
+
+    def get(self, services: Services, file: Artifact) -> LearnedAxes | None:
+        sha = segments.whole(file).sha256
+        with self._reading:  # One file at a time is in memory.
+            if sha not in self._kept:
+                try:
+                    self._kept[sha] = learned_axes(segments.read(services.artifacts, file))
+                except ValueError:  # It ended before any axes were learned.
+                    self._kept[sha] = None
+            self._kept.move_to_end(sha)
+            while len(self._kept) > self._number:
+                self._kept.popitem(last=False)
+            return self._kept[sha]
+
+
+_axes = _KeptAxes(64)
 
 
 def stored_names(names: Sequence[str], learned: LearnedMeasures | None) -> list[str]:

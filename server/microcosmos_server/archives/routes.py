@@ -51,8 +51,8 @@ async def read_archive(
     `after`, a generation, only the elites that entered later are returned, and only the cells
     that were emptied later.
     """
-    asked = (shown.services, shown.run, shown.file, generation, after, measures)
-    return await shown.answer(lambda session: reading.archive(session, *asked))
+    of, asked = (shown.services, shown.run, shown.file), (generation, after, measures)
+    return await shown.answer(lambda session: reading.archive(session, *of, *asked), *asked)
 
 
 @router.get("/archive/history", **archive_answers(HistoryRead), dependencies=[MAY_READ_SHARED])
@@ -61,8 +61,8 @@ async def read_history(shown: ShownArchiveDep, measures: str = "") -> Response:
 
     Each generation's archive follows from them.
     """
-    asked = (shown.services, shown.run, shown.file, measures)
-    return await shown.answer(lambda session: reading.history(session, *asked))
+    of = (shown.services, shown.run, shown.file)
+    return await shown.answer(lambda session: reading.history(session, *of, measures), measures)
 
 
 @router.get(
@@ -79,8 +79,10 @@ async def read_reprojection(
     separated by commas. An axis of the archive keeps its ends and bins; any other has the
     default ends of its measure and 24 bins. `measures` names further columns to return.
     """
-    asked = (shown.run, axes, measures)
-    return await shown.answer(lambda session: reading.reprojected(session, *asked))
+    asked = (axes, measures)
+    return await shown.answer(
+        lambda session: reading.reprojected(session, shown.run, *asked), *asked
+    )
 
 
 @router.get("/archive/poses", **BINARY, dependencies=[MAY_READ_SHARED])

@@ -45,6 +45,7 @@ from ..tables import (
     Generation,
     Result,
     Run,
+    Worker,
 )
 from ..workers import totals
 from .checkpoints import add_checkpoint, fall_back, newest_intact
@@ -438,6 +439,13 @@ class Attempt:
     def store_fault(self) -> str | None:
         """Return the fault of the store, if any. A lost mount looks like an empty store."""
         return mark.fault(self.services.sessions, self.services.artifacts)
+
+    @retried
+    def listed_plugins(self) -> list[dict[str, Any]]:
+        """Return the plug-ins that the worker had when it last reported."""
+        with self.current() as (session, run):
+            worker = session.get(Worker, run.worker)
+            return list(worker.plugins) if worker else []
 
     @retried
     def requeue(self) -> None:

@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from uuid import UUID
 
 from sqlalchemy import func, or_
+from sqlalchemy.exc import InterfaceError, OperationalError, ProgrammingError, TimeoutError
 
 from ..core.database import clock, now
 from ..core.errors import StoreUnavailable, first_line
@@ -25,6 +26,16 @@ OUTAGE_SECONDS = 600.0
 """Seconds for which an attempt waits for a database or store that does not answer."""
 
 logger = logging.getLogger(__name__)
+
+
+UNUSABLE = (OperationalError, InterfaceError, ProgrammingError, TimeoutError)
+"""Errors of a database that refuses connections, is away, or has other tables."""
+UNCLAIMED = 75
+"""Exit status of a process that could not use the database: EX_TEMPFAIL of sysexits.h."""
+
+
+class Unclaimed(Exception):
+    """A process could not use the database to claim its run."""
 
 
 class NothingComputed(Exception):
@@ -88,8 +99,12 @@ def claimed(
 
     An error inside is recorded on the run. An attempt that has lost its claim ends silently.
     Raise `NothingComputed` for an error before the first generation: its host may be broken.
+    Raise `Unclaimed` where the database cannot be used, for which no run is to blame.
     """
-    attempt = claim(services, run_id, worker)
+    try:
+        attempt = claim(services, run_id, worker)
+    except UNUSABLE as error:
+        raise Unclaimed from error
     if attempt is None:
         yield None
         return

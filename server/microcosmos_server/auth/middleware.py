@@ -98,6 +98,8 @@ class PrincipalMiddleware:
         if slug := request.headers.get(SHARE_HEADER):
             request.state.share = await run_in_threadpool(self.open_share, slug)
             request.state.principal = SHARE_HOLDER
+            if method not in SAFE:  # Before the body is read.
+                raise Forbidden(f"The holder of a share may only read, not {method}.")
             return None
         bearer = _bearer(request.headers)
         if self.needs_token and bearer is None and method not in SAFE:

@@ -34,16 +34,19 @@ class AnswerCache:
         self._size = 0
         self._making = dict[str, asyncio.Task[bytes]]()
 
-    async def get(self, tag: str, make: Callable[[], bytes]) -> bytes:
+    async def get(
+        self, tag: str, make: Callable[[], bytes], *, anonymous: bool = False
+    ) -> bytes:
         """Return the bytes of a tag; `make` makes them in a thread if they are not kept.
 
-        Raise `DomainError` if many others are being made.
+        Raise `DomainError` if many others are being made; for `anonymous` requests, if a few
+        are: they must not take all places.
         """
         if tag in self._kept:
             self._kept.move_to_end(tag)
             return self._kept[tag]
         if tag not in self._making:
-            if len(self._making) >= self.waiting:
+            if len(self._making) >= (self.waiting // 4 if anonymous else self.waiting):
                 detail = "The server prepares many answers already; try again."
                 raise Unavailable(detail, title="Busy", headers=RETRY_AFTER)
             self._making[tag] = asyncio.create_task(self._make(tag, make))
@@ -70,7 +73,7 @@ class AnswerCache:
 
 
 def tag_of(*parts: Any) -> str:
-    """Return a tag of everything on which an answer depends."""
+    """Return a tag of everything on which an answer depends; of long parts, in a thread."""
     return sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -94,7 +97,8 @@ async def respond(
     if zipped:
         headers["Content-Encoding"] = "gzip"
         make = partial(_zipped, make)
-    content = await request.app.state.answers.get(etag, make)
+    anonymous = request.state.share is not None
+    content = await request.app.state.answers.get(etag, make, anonymous=anonymous)
     return Response(content, headers=headers, media_type=media_type)
 
 

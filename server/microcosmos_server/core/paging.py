@@ -1,12 +1,13 @@
 """Paging: a cursor names the order, the key and the id of the last row that was sent."""
 
 from base64 import urlsafe_b64decode, urlsafe_b64encode
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import Annotated, Any
 
 from pydantic import Field, FiniteFloat, StringConstraints, TypeAdapter
 from pydantic_core import to_json
-from sqlalchemy import ColumnElement, Select, literal, tuple_
+from sqlalchemy import ColumnElement, Select, Text, cast, func, literal, tuple_
 from sqlalchemy.orm import Session
 
 from .errors import invalid_field
@@ -17,6 +18,15 @@ TEXT = Annotated[str, StringConstraints(pattern=r"^[^\x00]*$")]
 COUNT = Annotated[int, Field(ge=0, lt=1 << 63)]
 NUMBER = FiniteFloat
 """Types of keys, with the values that every database can compare."""
+
+
+PAGE_LENGTH = 8_000_000
+"""Length of rows, in characters, after which a page ends: a spec may have 1 MB."""
+
+
+def length(json: Any) -> ColumnElement[int]:
+    """Return the length of a JSON column as text."""
+    return func.length(cast(json, Text))
 
 
 @dataclass(frozen=True)
@@ -32,6 +42,8 @@ class Order:
     key_type: Any
     id: Any
     id_type: Any
+    length: ColumnElement[int] = field(default_factory=lambda: literal(0))
+    """The length of a row; of rows that may be long, a page has fewer."""
 
     # Rows without a key are read apart: NULL is first in SQLite and last in PostgreSQL, and
     # `NULLS LAST` would need a sort in place of the index (tests/server/core/test_orders.py).
@@ -40,19 +52,25 @@ class Order:
     ) -> tuple[list[Any], str | None]:
         """Return the rows after a cursor, and the cursor of the next page, if there is one."""
         after = self._position(cursor) if cursor else None
-        rows: list[Any] = []
+        places: list[Any] = []
         if after is None or after[0] is not None:
             beyond = [] if after is None else [self._beyond(*after)]
-            rows += self._read(session, statement, limit + 1, self.key.is_not(None), *beyond)
-        if len(rows) <= limit:
+            places += self._read(session, statement, limit + 1, self.key.is_not(None), *beyond)
+        if len(places) <= limit:
             later = after and after[0] is None
             beyond = [self._beyond_id(after[1])] if after and later else []
-            left = limit + 1 - len(rows)
-            rows += self._read(session, statement, left, self.key.is_(None), *beyond)
-        items = [row for row, _ in rows[:limit]]
-        if len(rows) <= limit:
+            left = limit + 1 - len(places)
+            places += self._read(session, statement, left, self.key.is_(None), *beyond)
+        lengths = accumulate(length for *_, length in places[:limit])
+        kept = max(1, sum(length <= PAGE_LENGTH for length in lengths))
+        chosen = [identity for _, identity, _ in places[:kept]]
+        rows = session.scalars(statement.where(self.id.in_(chosen)))
+        found = {getattr(row, self.id.key): row for row in rows}
+        # A row may have been deleted since its place was read.
+        items = [found[identity] for identity in chosen if identity in found]
+        if len(places) <= kept:
             return items, None
-        last = [self.name, rows[limit - 1][1], getattr(items[-1], self.id.key)]
+        last = [self.name, *places[kept - 1][:2]]
         return items, urlsafe_b64encode(to_json(last)).decode()
 
     @property
@@ -62,11 +80,11 @@ class Order:
     def _read(
         self, session: Session, statement: Select[Any], limit: int, *where: ColumnElement[bool]
     ) -> list[Any]:
-        """Return rows that all have a key, or all have none."""
+        """Return key, id and length of rows that all have a key, or all have none."""
         columns = (self.key, self.id)
         order = [one.desc() for one in columns] if self._descending else columns
-        listed = statement.add_columns(self.key).where(*where).order_by(*order).limit(limit)
-        return list(session.execute(listed))
+        places = statement.with_only_columns(*columns, self.length).where(*where)
+        return list(session.execute(places.order_by(*order).limit(limit)))
 
     def _position(self, cursor: str) -> tuple[Any, Any]:
         kind = TypeAdapter(tuple[str, self.key_type | None, self.id_type])  # pyright: ignore

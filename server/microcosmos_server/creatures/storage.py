@@ -6,7 +6,8 @@ from operator import itemgetter
 from typing import Any, cast
 from uuid import UUID
 
-from sqlalchemy import Select, func, literal_column, select, update
+from sqlalchemy import Select, Text, case, func, literal_column, select, update
+from sqlalchemy import cast as sql_cast
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from microcosmos.archive import creature, pedigree
@@ -47,12 +48,18 @@ def creature_columns(
 def insert_and_lock(session: Session, rows: Sequence[dict[str, Any]]) -> None:
     """Insert creatures. Existing ones cannot be deleted before the transaction ends.
 
-    An existing creature without a pose stream gets the new one.
+    An existing creature without a pose stream gets the new one. What somebody's file says that
+    it measured gives way to the evaluation here: the name is a hash of the identity alone.
     """
     if rows:
         # The update takes the lock of the row, also if it changes nothing.
-        known, new = Creature.__table__.c.poses, literal_column("excluded.poses")
-        values = {"poses": func.coalesce(known, new)}
+        columns = Creature.__table__.c
+        poses, measured = (literal_column(f"excluded.{name}") for name in ("poses", "measured"))
+        here = columns.imported & (func.coalesce(sql_cast(measured, Text), "null") != "null")
+        values = {
+            "poses": func.coalesce(columns.poses, poses),
+            "measured": case((here, measured), else_=columns.measured),
+        }
         insert_or_update(session, Creature, rows, ["sha256"], values)
 
 
@@ -119,7 +126,7 @@ def with_ancestors(session: Session, row: Creature) -> dict[str, Any]:
 def import_files(session: Session, *files: dict[str, Any]) -> None:
     """Import checked creature files, sorted, so that two requests cannot deadlock.
 
-    A known creature stays as it is.
+    A known creature stays as it is, with what was measured here.
     """
     for file in sorted(files, key=itemgetter("sha256")):
         name = file["sha256"]

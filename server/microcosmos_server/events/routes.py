@@ -17,8 +17,9 @@ from ..auth.authorize import Reader
 from ..queue.jobs import ANSWER_SECONDS
 from ..services.messages import RESET
 
-QUEUE_SIZE = 1000
-"""Events that wait for a slow listener; with more it has to fetch everything again."""
+QUEUE_SIZE, QUEUE_LENGTH = 1000, 16_000_000
+"""Events that wait for a slow listener, and their length in characters; with more it has to
+fetch everything again."""
 PAGE = 100
 """Events to read at once: each may have many kilobytes."""
 # A closing server waits at most this long for a read to end.
@@ -48,15 +49,24 @@ class Listener:
     waiting: asyncio.Queue[Entry | None] = field(
         default_factory=lambda: asyncio.Queue(QUEUE_SIZE)
     )
+    length: int = 0
+    """The length of the events that wait, in characters."""
 
     def put(self, entry: Entry | None) -> None:
         # Dropped, not waited for: one slow client must neither fill the memory nor hold up
         # others.
-        if self.waiting.full():
+        if self.waiting.full() or (entry and self.length + len(entry.data) > QUEUE_LENGTH):
             while not self.waiting.empty():
                 self.waiting.get_nowait()
-            entry = entry and Entry(entry.id, RESET)
+            self.length, entry = 0, entry and Entry(entry.id, RESET)
+        self.length += len(entry.data) if entry else 0
         self.waiting.put_nowait(entry)
+
+    async def get(self) -> Entry | None:
+        """Wait for the next event."""
+        entry = await self.waiting.get()
+        self.length -= len(entry.data) if entry else 0
+        return entry
 
 
 class Fanout:
@@ -127,15 +137,20 @@ class Fanout:
                 yield Entry(start, RESET).sent()
             else:
                 start = after
-                while page := await self.redis.xrange(self.stream, min=f"({start}", count=PAGE):
+                while page := await self._page(start):
                     for entry in (_entry(*item) for item in page):
                         start = entry.id
                         if run in (None, entry.run) or entry.kind == RESET:
                             yield entry.sent()
+                    # The client reads a page at its own pace, and long events trim many.
+                    if not await self._contains(start):
+                        start = listener.since
+                        yield Entry(start, RESET).sent()
+                        break
         except RedisError:  # It is away, or refuses a malformed id.
             start = listener.since
             yield Entry(start, RESET).sent()
-        while (entry := await listener.waiting.get()) is not None:
+        while (entry := await listener.get()) is not None:
             new = position(entry.id) > position(start) and run in (None, entry.run)
             if new or entry.kind == RESET:
                 yield entry.sent()
@@ -158,6 +173,9 @@ class Fanout:
     def _broadcast(self, entry: Entry) -> None:
         for listener in self.listeners:
             listener.put(entry)
+
+    async def _page(self, after: str) -> Any:
+        return await self.redis.xrange(self.stream, min=f"({after}", count=PAGE)
 
     async def _newest(self) -> str:
         # Of all events, also of those that were trimmed since.

@@ -8,6 +8,7 @@ from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, Query, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import Response
 from sqlalchemy.orm import Session
 
@@ -186,7 +187,8 @@ async def export_run(
     """
     run, checkpoint, form = found.run, found.checkpoint, found.form
     state = run.id, run.name, segments.whole(checkpoint).sha256, run.rewinds, run.generation
-    tag = tag_of(VERSION, form, *state, run.finished_at, found.real, found.ancestors)
+    of = (VERSION, form, *state, run.finished_at, found.real, found.ancestors)
+    tag = await run_in_threadpool(tag_of, *of)
     make = partial(_make, services, found)
     return await respond(request, tag, make, MEDIA_TYPES.get(form, ZIP), found.headers)
 

@@ -328,13 +328,10 @@ class CountRequests:
 
 
 def route(scope: Scope) -> str:
-    """Return the path with parameter names in place of their values."""
-    path = scope["path"]
-    given = sorted(scope.get("path_params", {}).items(), key=lambda p: -len(str(p[1])))
-    if "endpoint" not in scope:
+    """Return the template of the matched route: clients choose paths, and so their number."""
+    matched = scope.get("route")
+    if matched is None:
         return "none"
-    if any(name == "path" for name, _ in given):
+    if "path" in scope["path_params"]:
         return "page"
-    for name, value in given:
-        path = path.replace(f"/{value}", f"/{{{name}}}", 1)
-    return path
+    return ("/api/v1" if scope["path"].startswith("/api/v1/") else "") + matched.path

@@ -98,7 +98,9 @@ def _run_reader(form: Form) -> Callable[..., Awaitable[Response]]:
             with services.sessions.read() as session:
                 return form.write(of_run(session, run, above, last))
 
-        tag = tag_of(VERSION, form.ending, run.id, run.rewinds, last, above)
+        tag = await run_in_threadpool(
+            tag_of, VERSION, form.ending, run.id, run.rewinds, last, above
+        )
         headers = _headers(form, str(run.id)[:8])
         return await respond(request, tag, make, form.media_type, headers)
 
@@ -109,16 +111,16 @@ def _creature_reader(form: Form) -> Callable[..., Awaitable[Response]]:
     async def read(
         request: Request, sha: Sha, share: ShareAccessDep, services: ServicesDep
     ) -> Response:
-        def make() -> bytes:
+        def make() -> tuple[bytes, str]:
             with services.sessions.read() as session:
                 row = find_creature(session, sha, share)
                 tree = births.shared(session, row) if share else births.relatives(session, sha)
-                return form.write(arranged(session, tree))
+                content = form.write(arranged(session, tree))
+            # Any run may add a descendant, so the bytes themselves are the tag.
+            return content, tag_of(content)
 
-        # Any run may add a descendant, so the bytes themselves are the tag.
-        content = await run_in_threadpool(make)
+        content, tag = await run_in_threadpool(make)
         headers = _headers(form, sha[:12])
-        tag = tag_of(content)
         return await respond(request, tag, lambda: content, form.media_type, headers)
 
     return read

@@ -6,7 +6,6 @@ from typing import Any, TypeVar
 
 from rq.job import Job, JobStatus
 from sqlalchemy import ColumnElement, delete, select, update
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from ..core.database import insert_missing
@@ -16,7 +15,7 @@ from ..queue.jobs import FAILURE_SECONDS, KINDS, REASON
 from ..services.services import Services
 from ..storage import mark
 from ..storage.artifacts import rendering_path
-from ..storage.garbage import discard
+from ..storage.garbage import begin_file, discard, keep_file
 from ..tables import AUDIT, REPLAY, Artifact, Creature, InstallationState
 
 ANONYMOUS_LIMIT = 8
@@ -121,16 +120,16 @@ def enqueue_again(services: Services, creature: str, kind: str) -> None:
 def save(services: Services, creature: str, kind: str, data: bytes) -> None:
     """Save a rendering in place of an earlier one."""
     # The file before its row, as for checkpoints: a row must not name a file that is not whole.
-    stored = services.artifacts.write(rendering_path(creature, kind), data)
+    path = rendering_path(creature, kind)
+    begin_file(services.sessions, path)
+    stored = services.artifacts.write(path, data)
     row = {**vars(stored), "kind": kind, "number": KINDS[kind].version, "creature": creature}
     trusted = json.loads(data)["verdict"]["trusted"] if kind == AUDIT else None
-    try:
-        with services.sessions.write.begin() as session:
-            _delete(session, creature, kind, trusted)
-            insert_missing(session, Artifact, [row])
-    except IntegrityError:  # The creature was deleted with its run meanwhile.
-        services.artifacts.delete(stored.path)
-        raise
+    # It fails if the creature was deleted with its run meanwhile.
+    with services.sessions.write.begin() as session:
+        _delete(session, creature, kind, trusted)
+        insert_missing(session, Artifact, [row])
+        keep_file(session, path)
 
 
 def _delete(session: Session, creature: str, kind: str, trusted: bool | None = None) -> None:

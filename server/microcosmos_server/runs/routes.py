@@ -17,7 +17,7 @@ from microcosmos.spec import EXPERIMENTS, Folding, drawing, estimate, parse, tar
 from ..auth.authorize import MAY_READ, MAY_READ_SHARED, Reader, Writer
 from ..core.errors import NotFound, invalid_field
 from ..core.json_body import json_route
-from ..core.paging import COUNT, MOMENT, NUMBER, TEXT, Order
+from ..core.paging import COUNT, MOMENT, NUMBER, TEXT, Order, length
 from ..core.schemas import MAX_INTEGER, Wire
 from ..estimates import position
 from ..estimates.eta import MeasuredSpeed, speeds_of
@@ -70,7 +70,7 @@ KEYS: dict[str, tuple[ColumnElement[Any], Any]] = {
 
 
 def order(sort: str) -> Order:
-    return Order(sort, *KEYS[sort.removeprefix("-")], Run.id, UUID)
+    return Order(sort, *KEYS[sort.removeprefix("-")], Run.id, UUID, length(Run.spec))
 
 
 # Both databases make a table of the members of an array, under different names.
@@ -216,6 +216,7 @@ def list_runs(
 ) -> RunPage:
     """Return runs with any of these states and experiments, this tag and this text.
 
+    Of runs with long specs a page has fewer than `limit`: `next` tells whether more follow.
     `q` searches names, tags, notes and the start of ids. `sweep` is an id, or `none`. With `-`
     the sort is descending; runs without a value come last. `deleted` selects the bin.
     """

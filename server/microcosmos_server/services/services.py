@@ -9,7 +9,7 @@ from redis import Redis
 from sqlalchemy.orm import Session
 
 from ..core import database
-from ..core.database import Sessions
+from ..core.database import REQUEST_CONNECTIONS, Sessions
 from ..queue.jobs import ANSWER_SECONDS, Jobs, open_redis
 from ..settings import Settings
 from ..storage.artifacts import Artifacts
@@ -67,4 +67,7 @@ def _session(services: ServicesDep) -> Iterator[Session]:
 
 
 # Closed before the answer is sent: a long download must not hold a connection.
-SessionDep = Annotated[Session, Depends(_session, scope="function")]
+# A request waits for its turn without a thread.
+SessionDep = Annotated[
+    Session, Depends(_session, scope="function", max_concurrency=REQUEST_CONNECTIONS)
+]

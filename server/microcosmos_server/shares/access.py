@@ -10,6 +10,7 @@ from sqlalchemy import Select, exists, select
 from sqlalchemy.orm import Session
 
 from microcosmos.archive import export
+from microcosmos.sizes import size
 
 from ..archives import elites
 from ..core.database import insert_or_update
@@ -18,7 +19,7 @@ from ..runs.curves import corrected_at
 from ..services.services import Services
 from ..storage import segments
 from ..storage.artifacts import reason
-from ..storage.garbage import discard
+from ..storage.garbage import begin_file, discard, keep_file
 from ..tables import (
     CHECKPOINT,
     FINISHED,
@@ -170,9 +171,13 @@ def copy_checkpoint(services: Services, share: Share) -> None:
     try:
         if checkpoint is None or (copied and _is_stored(services, copied)):
             return
+        if (length := segments.whole(checkpoint).size) > segments.LARGEST:
+            log.warning("A share of run %s has no file: it has %s", share.run_id, size(length))
+            return
         # Verified: a share must not publish a damaged file for good.
         data, _ = segments.read_intact(services.artifacts, checkpoint)
         licensed = export.licensed(data, share.licence, share.credit)
+        begin_file(services.sessions, archive_path(share))
         stored = services.artifacts.write(archive_path(share), licensed)
     except (segments.Damaged, OSError) as error:
         why = reason(error) if isinstance(error, OSError) else error
@@ -185,6 +190,7 @@ def copy_checkpoint(services: Services, share: Share) -> None:
             row = {**vars(stored), "kind": PUBLISHED, **of_run}
             anew = {"size": stored.size, "sha256": stored.sha256}  # The store had lost it.
             insert_or_update(session, Artifact, [row], ["path"], anew)
+            keep_file(session, stored.path)
         else:  # It was revoked, or its run was purged, while the file was written.
             discard(session, [stored.path])
 

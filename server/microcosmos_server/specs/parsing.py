@@ -74,10 +74,19 @@ class ParsedSpec:
 
 def parse_stored(document: dict[str, Any]) -> ParsedSpec | None:
     """Return the spec and estimate of a stored run; None if this version cannot read it."""
-    return _parsed(json.dumps(document, sort_keys=True))
+    text = json.dumps(document, sort_keys=True)
+    return _kept(text) if len(text) <= KEPT_LENGTH else _parsed(text)
+
+
+KEPT_LENGTH = 20_000
+"""Longest spec, as JSON, that is kept: a usual one has 5,000 characters."""
 
 
 @lru_cache(maxsize=1024)
+def _kept(text: str) -> ParsedSpec | None:
+    return _parsed(text)
+
+
 def _parsed(text: str) -> ParsedSpec | None:
     try:
         spec = specs.parse(json.loads(text))

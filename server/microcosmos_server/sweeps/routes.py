@@ -16,7 +16,7 @@ from ..auth import tokens
 from ..auth.authorize import MAY_READ, Reader, Writer, authorize_owner
 from ..core.errors import TooMany
 from ..core.json_body import json_route
-from ..core.paging import MOMENT, Order
+from ..core.paging import MOMENT, Order, length
 from ..estimates import position
 from ..estimates.eta import speeds_of
 from ..runs import lifecycle
@@ -42,6 +42,7 @@ from .plan import Plan, plan, refuse_initial, refuse_too_large
 from .schemas import (
     CaseRead,
     SkippedRun,
+    SweepBrief,
     SweepChange,
     SweepChanged,
     SweepCreate,
@@ -135,7 +136,10 @@ def announce(services: Services, sweep_id: UUID) -> None:
 
 
 router = APIRouter(prefix="/sweeps", tags=["sweeps"], route_class=json_route(SPEC_BYTES))
-NEWEST_FIRST = Order("-created", Sweep.created_at.expression, MOMENT, Sweep.id, UUID)
+LENGTH = length(Sweep.spec) + length(Sweep.grid)
+NEWEST_FIRST = Order(
+    "-created", Sweep.created_at.expression, MOMENT, Sweep.id, UUID, length=LENGTH
+)
 Points = Annotated[int | None, Query(ge=2, le=10_000)]
 
 
@@ -221,7 +225,10 @@ def list_sweeps(
     limit: Annotated[int, Query(ge=1, le=100)] = 20,
     deleted: bool = False,
 ) -> SweepPage:
-    """Return sweeps, newest first; `deleted` selects those with all runs in the bin."""
+    """Return sweeps, newest first; `deleted` selects those with all runs in the bin.
+
+    Of sweeps with long specs a page has fewer than `limit`.
+    """
     kept = select(Run.id).where(Run.sweep == Sweep.id, lifecycle.NOT_IN_BIN).exists()
     listed = select(Sweep).where(~kept if deleted else kept)
     sweeps, following = NEWEST_FIRST.page(session, listed, cursor, limit)
@@ -324,7 +331,23 @@ def _current(services: Services, sweep_id: UUID) -> SweepRead:
         return read_sweep(session, find(session, Sweep, sweep_id))
 
 
-def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
+def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepBrief]:
+    of_sweeps = _runs_of(session, sweeps)
+    owners = tokens.owner_names(session, (sweep.owner for sweep in sweeps))
+    return [_read(one, of_sweeps[one.id], owners.get(one.owner)) for one in sweeps]
+
+
+def read_sweep(session: Session, sweep: Sweep) -> SweepRead:
+    runs = _runs_of(session, [sweep])[sweep.id]
+    owner = tokens.owner_names(session, [sweep.owner]).get(sweep.owner)
+    cases = [CaseRead(values=values, runs=[]) for values in combinations(sweep.grid)]
+    for run in runs:
+        if run.deleted_at is None:
+            cases[run.sweep_index % len(cases)].runs.append(run.id)
+    return SweepRead(**dict(_read(sweep, runs, owner)), cases=cases)
+
+
+def _runs_of(session: Session, sweeps: Sequence[Sweep]) -> dict[UUID, list[Any]]:
     of_sweeps: dict[UUID, list[Any]] = defaultdict(list)
     names = ("id", "sweep", "sweep_index", "status", "generation", "generations", "deleted_at")
     columns = [getattr(Run, name) for name in names]
@@ -333,26 +356,17 @@ def read_sweeps(session: Session, sweeps: Sequence[Sweep]) -> list[SweepRead]:
         select(*columns).where(mine).order_by(Run.sweep, Run.sweep_index)
     ):
         of_sweeps[row.sweep].append(row)
-    owners = tokens.owner_names(session, (sweep.owner for sweep in sweeps))
-    return [_read(one, of_sweeps[one.id], owners.get(one.owner)) for one in sweeps]
+    return of_sweeps
 
 
-def read_sweep(session: Session, sweep: Sweep) -> SweepRead:
-    return read_sweeps(session, [sweep])[0]
-
-
-def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepRead:
+def _read(sweep: Sweep, all_runs: Sequence[Any], owner: str | None) -> SweepBrief:
     runs = [run for run in all_runs if run.deleted_at is None]
-    cases = [CaseRead(values=values, runs=[]) for values in combinations(sweep.grid)]
-    for run in runs:
-        cases[run.sweep_index % len(cases)].runs.append(run.id)
     counted = Counter(run.status for run in runs)
     shares = [progress(run) for run in runs]
     names = ("id", "name", "experiment", "spec", "seeds", "grid", "created_at")
-    return SweepRead(
+    return SweepBrief(
         **{name: getattr(sweep, name) for name in names},
         owner=owner,
-        cases=cases,
         total=len(runs),
         deleted=len(all_runs) - len(runs),
         status_counts={status: counted[status] for status in STATUSES if counted[status]},

@@ -70,7 +70,7 @@ class CaseRead(Wire):
     """One for each seed, in the order of the seeds, without deleted ones."""
 
 
-class SweepRead(Wire):
+class SweepBrief(Wire):
     id: UUID
     name: str | None
     experiment: str
@@ -79,7 +79,6 @@ class SweepRead(Wire):
     grid: dict[str, list[Any]]
     created_at: datetime
     owner: str | None
-    cases: list[CaseRead]
     total: int
     deleted: int
     """Number of runs in the bin, which no other field counts."""
@@ -88,8 +87,13 @@ class SweepRead(Wire):
     progress: float
 
 
+class SweepRead(SweepBrief):
+    cases: list[CaseRead]
+    """With the values of each, thus possibly long: lists omit them."""
+
+
 class SweepPage(Wire):
-    items: list[SweepRead]
+    items: list[SweepBrief]
     next: str | None
 
 

@@ -192,8 +192,8 @@ class GarbageFile(Base):
     __tablename__ = "garbage_files"
 
     path: Mapped[str] = mapped_column(String(255), primary_key=True)
-    failed_at: Mapped[datetime | None]
-    """When it last could not be deleted: it is tried after all others."""
+    due_at: Mapped[datetime] = mapped_column(default=clock())
+    """When it may be deleted. If that fails, it is tried after all others."""
 
 
 class Share(Owned, Expiring, Base):

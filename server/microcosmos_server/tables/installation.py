@@ -114,7 +114,7 @@ class DeviceUse(Base):
 NOBODY = UUID(int=0)
 
 
-ProblemKind = Literal["untested", "device", "self-test", "store", "schema"]
+ProblemKind = Literal["untested", "device", "self-test", "store", "schema", "database"]
 """`untested`: it has yet to test itself. `device`: its GPU is gone. `schema`: the tables are of
 another version."""
 

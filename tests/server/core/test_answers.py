@@ -90,3 +90,25 @@ def test_more_answers_than_may_wait_are_refused():
         cache.close()
 
     asyncio.run(use())
+
+
+def test_anonymous_requests_leave_places_to_others():
+    go = Event()
+
+    def wait():
+        return go.wait(60) and b"made"
+
+    async def use():
+        cache = AnswerCache(10, waiting=8)
+        first = [asyncio.create_task(cache.get(tag, wait, anonymous=True)) for tag in "ab"]
+        await asyncio.sleep(0)
+        with pytest.raises(DomainError):
+            await cache.get("c", wait, anonymous=True)
+        assert cache._making.keys() == {"a", "b"}
+        other = asyncio.create_task(cache.get("c", wait))
+        await asyncio.sleep(0)
+        go.set()
+        await asyncio.gather(*first, other)
+        cache.close()
+
+    asyncio.run(use())

@@ -1,5 +1,6 @@
 """HTTP itself: HEAD, methods, headers, JSON types, and requests that are only half sent."""
 
+import asyncio
 import re
 import socket
 import threading
@@ -28,6 +29,19 @@ from microcosmos_server.settings import Settings, from_environment
 from microcosmos_server.storage.artifacts import Artifacts
 
 ROUTER = Path(__file__).parents[3] / "web" / "src" / "store" / "router.ts"
+
+
+@pytest.mark.parametrize("path", ["runs", "runs/{run}", "runs/{run}/generations", "sweeps"])
+def test_many_requests_at_once_wait_for_each_other_and_all_are_answered(address, run_id, path):
+    """More than there are threads, each of which needs a connection to the database."""
+
+    async def ask():
+        limits = httpx.Limits(max_connections=None)
+        async with httpx.AsyncClient(timeout=20, verify=False, limits=limits) as client:
+            url = f"{address}/api/v1/{path.format(run=run_id)}"
+            return await asyncio.gather(*(client.get(url) for _ in range(100)))
+
+    assert [one.status_code for one in asyncio.run(ask())] == [200] * 100
 
 
 @pytest.fixture

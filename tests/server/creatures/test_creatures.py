@@ -114,7 +114,7 @@ def test_a_rendering_that_failed_says_why(api, services, known, monkeypatch):
     def refuse():
         raise ValueError("it takes too much memory\nin many lines")
 
-    monkeypatch.setattr(jobs, "prepare_once", refuse)
+    monkeypatch.setattr(jobs, "prepare_job", refuse)
     assert api.get(f"creatures/{known}/replay").status_code == 202
     SimpleWorker([services.jobs.renderings], serializer=JSONSerializer).work(burst=True)
     answer = api.get(f"creatures/{known}/replay")

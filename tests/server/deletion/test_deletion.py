@@ -5,15 +5,17 @@ from pathlib import Path
 import pytest
 from answers import detail
 from deletion import delete_for_good, files, finish, let_time_pass, row_counts, submit_another
-from sqlalchemy import select
+from sqlalchemy import select, update
 
 from microcosmos.archive import creature
 from microcosmos_server.attempts.claim import claim
+from microcosmos_server.core.database import clock
 from microcosmos_server.deletion import purge
 from microcosmos_server.maintenance.reconcile import reconcile
 from microcosmos_server.notifications import outbox
 from microcosmos_server.renderings.storage import existing, save
 from microcosmos_server.runs import lifecycle
+from microcosmos_server.shares import access
 from microcosmos_server.storage import garbage
 from microcosmos_server.tables import (
     GIF,
@@ -22,8 +24,10 @@ from microcosmos_server.tables import (
     Creature,
     Elite,
     GarbageCreature,
+    GarbageFile,
     Parent,
     Run,
+    Share,
 )
 
 pytestmark = pytest.mark.postgresql
@@ -242,6 +246,31 @@ def test_files_that_cannot_be_removed_do_not_keep_others(services, monkeypatch, 
     assert files(services) == names[:2]
 
 
+def test_behind_a_lost_mount_no_file_counts_as_deleted(services):
+    services.artifacts.write("shares/one.h5", b"")
+    with services.sessions.write.begin() as session:
+        garbage.discard(session, ["shares/one.h5"])
+    store = Path(services.artifacts.root)
+    away = store.rename(store.with_name("elsewhere"))
+    store.mkdir()
+    assert not garbage.remove_files(services.sessions, services.artifacts)
+    assert row_counts(services)["garbage_files"] == 1
+    store.rmdir()
+    away.rename(store)
+    assert garbage.remove_files(services.sessions, services.artifacts)
+    assert files(services) == []
+
+
+def test_a_file_that_a_row_names_is_kept(services, run_id, report):
+    """Two publications of one archive write one file, and one of them ends early."""
+    finish(services, run_id, report(1, {0: 1.0}))
+    (path,) = files(services)
+    with services.sessions.write.begin() as session:
+        garbage.discard(session, [path])
+    purge.purge(services)
+    assert files(services) == [path]
+
+
 def drawn(services):
     """The creatures of the files that are renderings."""
     names = (Path(file).name for file in files(services) if file.startswith("replays/"))
@@ -257,6 +286,44 @@ def test_a_rendering_that_was_made_again_replaces_the_file(services, run_id, rep
     (kept,) = files(services)
     assert services.artifacts.read(kept) == existing(services, name, GIF) == b"a film"
     assert row_counts(services)["garbage_files"] == 0
+
+
+@pytest.mark.parametrize("write", ["rendering", "share"])
+def test_a_file_without_its_row_is_deleted_in_time(
+    api, services, run_id, report, identity, monkeypatch, write
+):
+    """The database goes away, or the process ends, between the two."""
+    finish(services, run_id, report(1, {0: 1.0}))
+    with monkeypatch.context() as patch:
+        patch.setattr(access, "copy_checkpoint", lambda *_: None)
+        slug = api.post("shares", json={"run": str(run_id)}).json()["slug"]
+    before = files(services)
+    write_file = services.artifacts.write
+
+    def write_and_end(_, path, data):
+        write_file(path, data)
+        raise KeyboardInterrupt
+
+    def write_file_of_share():
+        with services.sessions.read() as session:
+            share = session.get_one(Share, slug)
+        access.copy_checkpoint(services, share)
+
+    def write_rendering():
+        save(services, creature.name(identity(1000)), GIF, b"a film")
+
+    monkeypatch.setattr(access.export, "licensed", lambda data, *_: data)
+    with monkeypatch.context() as patch:
+        patch.setattr(type(services.artifacts), "write", write_and_end)
+        with pytest.raises(KeyboardInterrupt):
+            {"rendering": write_rendering, "share": write_file_of_share}[write]()
+    (lost,) = set(files(services)) - set(before)
+    purge.purge(services)
+    assert lost in files(services)  # Its writer may be about to insert the row.
+    with services.sessions.write.begin() as session:
+        session.execute(update(GarbageFile).values(due_at=clock()))
+    purge.purge(services)
+    assert files(services) == before
 
 
 def test_a_restored_run_is_not_purged_and_a_purged_one_is_not_restored(

@@ -243,6 +243,52 @@ def test_a_slow_listener_is_reset():
     ]
 
 
+def test_what_waits_for_a_slow_listener_is_limited_in_length(monkeypatch):
+    monkeypatch.setattr(routes, "QUEUE_LENGTH", 1000)
+    listener = routes.Listener("0-0")
+    kinds, longest = [], 0
+
+    async def take():
+        entry = await listener.get()
+        kinds.append((entry.id, entry.kind))
+
+    for number in range(6):
+        listener.put(routes.Entry(f"{number}-0", "elites", data="x" * 300))
+        longest = max(longest, listener.length)
+    while not listener.waiting.empty():
+        asyncio.run(take())
+    assert kinds == [("3-0", "reset"), ("4-0", "elites"), ("5-0", "elites")]
+    assert longest == 900
+    assert listener.length == 0
+
+
+def test_events_trimmed_while_a_client_catches_up_are_not_skipped_in_silence(
+    services, flush, monkeypatch
+):
+    """It reads a page at its own pace; long events may trim many others meanwhile."""
+    flush()
+    monkeypatch.setattr(routes, "PAGE", 2)
+    for _ in range(9):
+        services.events.publish("run", uuid4(), {})
+    services.events.messenger.flush(10)
+    ids = [one.decode() for one, _ in services.redis.xrange(services.events.stream)]
+
+    async def catch_up():
+        fanout = routes.Fanout(services.settings.redis_url, services.events.stream)
+        fanout.read_up_to = ids[-1]
+        sent = []
+        with fanout.listening() as listener:
+            async for event in fanout.follow(listener, ids[0], None):
+                sent.append((event.id, event.event))
+                if len(sent) == 1:
+                    services.redis.xtrim(services.events.stream, maxlen=2, approximate=False)
+                    listener.put(None)
+        await fanout.redis.aclose()
+        return sent
+
+    assert asyncio.run(catch_up()) == [(ids[1], "run"), (ids[2], "run"), (ids[-1], "reset")]
+
+
 @pytest.fixture
 def frozen(tmp_path):
     """A Redis, and a function that freezes it for a block: it accepts, and is silent."""

@@ -76,6 +76,24 @@ def test_requests_are_counted_by_route_and_not_by_address(scrape, api, run_id):
     assert found["request_seconds_sum", ""] > 0
 
 
+def test_no_path_makes_labels_without_limit(scrape, address):
+    def labels():
+        return {labels for name, labels in scrape() if name == "requests_total"}
+
+    with httpx.Client(base_url=address, verify=False, timeout=20) as client:
+        for name in ("abcdefgh", "ijklmnop", "qrstuvwx"):
+            for path in (
+                f"s/{name}Y/s/{name}",
+                f"api/v1/{name}",
+                f"{name}/s/{name}",
+                f"s/{name}",
+            ):
+                client.get(path)
+    found = [one for one in labels() if "/s/" in one or "rest" in one or "page" in one]
+    assert len(found) <= 4
+    assert not any("abc" in one or "ijk" in one for one in found)
+
+
 def test_metrics_without_redis_show_the_rest(run_id, served):
     address = served(redis_url="redis://127.0.0.1:1/0")
     lines = httpx.get(f"{address}/metrics", verify=False, timeout=30).text.splitlines()

@@ -115,7 +115,7 @@ def test_a_failed_kind_reports_its_error_and_leaves_the_others(
     def refuse():
         raise raised
 
-    monkeypatch.setattr(jobs, "prepare_once", refuse)
+    monkeypatch.setattr(jobs, "prepare_job", refuse)
     services.jobs.render(known, "audit")
     SimpleWorker([services.jobs.audits], serializer=JSONSerializer).work(burst=True)
     found = detail(api.get(f"creatures/{known}/audit"), 500)

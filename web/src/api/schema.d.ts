@@ -731,6 +731,7 @@ export interface paths {
          * List Runs
          * @description Return runs with any of these states and experiments, this tag and this text.
          *
+         *     Of runs with long specs a page has fewer than `limit`: `next` tells whether more follow.
          *     `q` searches names, tags, notes and the start of ids. `sweep` is an id, or `none`. With `-`
          *     the sort is descending; runs without a value come last. `deleted` selects the bin.
          */
@@ -1572,6 +1573,8 @@ export interface paths {
         /**
          * List Sweeps
          * @description Return sweeps, newest first; `deleted` selects those with all runs in the bin.
+         *
+         *     Of sweeps with long specs a page has fewer than `limit`.
          */
         get: operations["list_sweeps_api_v1_sweeps_get"];
         put?: never;
@@ -3585,6 +3588,45 @@ export interface components {
             /** Sperm */
             sperm: number | null;
         };
+        /** SweepBrief */
+        SweepBrief: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Deleted */
+            deleted: number;
+            /** Experiment */
+            experiment: string;
+            /** Grid */
+            grid: {
+                [key: string]: unknown[];
+            };
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** Owner */
+            owner: string | null;
+            /** Progress */
+            progress: number;
+            /** Seeds */
+            seeds: number[];
+            /** Spec */
+            spec: {
+                [key: string]: unknown;
+            };
+            /** Status Counts */
+            status_counts: {
+                [key: string]: number;
+            };
+            /** Total */
+            total: number;
+        };
         /**
          * SweepChange
          * @description New name of a sweep; an empty one removes the name.
@@ -3706,7 +3748,7 @@ export interface components {
         /** SweepPage */
         SweepPage: {
             /** Items */
-            items: components["schemas"]["SweepRead"][];
+            items: components["schemas"]["SweepBrief"][];
             /** Next */
             next: string | null;
         };

@@ -19,12 +19,11 @@ export type RunChange = Partial<
   Pick<Run, "name" | "tags" | "note" | "priority" | "labels" | "may_yield" | "device_patience">
 >;
 export type RunQuery = NonNullable<operations["list_runs_api_v1_runs_get"]["parameters"]["query"]>;
-export type Sweep = With<Wire["SweepRead"], { spec: Spec; grid: Grid; cases: SweepCase[] }> & Owned;
+export type Sweep = With<Wire["SweepBrief"], { spec: Spec; grid: Grid }> & Owned;
 /** `owner` is the name of the token; null without one. */
 export type Owned = { owner: string | null };
 export type SweepPage = With<Wire["SweepPage"], { items: Sweep[] }>;
 export type SweepChanged = Sweep & Pick<Wire["SweepChanged"], "changed" | "skipped">;
-type SweepCase = { values: CaseValues; runs: string[] };
 export type SweepSummary = With<Wire["SweepSummary"], { cases: CaseSummary[] }>;
 export type CaseSummary = With<Wire["CaseSummary"], { values: CaseValues }>;
 export type SweepCurves = Wire["SweepCurves"];

@@ -10,11 +10,12 @@ import "./sweeps.css";
 export const sweepTitle = ({ name, id }: Sweep) => name ?? text.sweepTitle(shortId(id));
 
 /** The number of runs with its factors: “6 runs: 3 seeds × 2 values of world.viscosity”. */
-export function sizeText({ seeds, grid, cases, total }: Sweep): string {
+export function sizeText({ seeds, grid, total }: Sweep): string {
   const fields = Object.entries(grid).map(([path, values]) => text.valuesOf(values.length, path));
   const each = seeds.length > 0 ? [text.seeds(seeds.length)] : [];
   const factors = [...each, ...fields].join(" × ");
-  const left = total < cases.length * Math.max(1, seeds.length);
+  const cases = Object.values(grid).reduce((product, values) => product * values.length, 1);
+  const left = total < cases * Math.max(1, seeds.length);
   return text.size(total, left, factors);
 }
 
