@@ -10,7 +10,7 @@ import pytest
 
 from microcosmos.archive import creature, file
 from microcosmos.build import build
-from microcosmos.experiments import OtherDevice, Stopped
+from microcosmos.experiments import OtherDevice, OtherSpec, Stopped
 from microcosmos.experiments.evolution import Evolution
 from microcosmos.invalid import InvalidField
 from microcosmos.search import loop
@@ -188,7 +188,7 @@ def test_the_file_of_another_spec_is_refused(course):
     for name, change in OTHER[spec.experiment].items():
         document[name] = document[name] | change if isinstance(change, dict) else change
     other = build(parse(document))
-    with pytest.raises(ValueError, match="`spec` in the file must be the run's own"):
+    with pytest.raises(OtherSpec, match="`spec` in the file must be the run's own"):
         other.restore(experiment.save(states[1]))
 
 

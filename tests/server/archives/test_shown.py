@@ -8,12 +8,14 @@ import httpx
 import numpy as np
 import pytest
 from reports import audit
+from sqlalchemy import select, update
 
 from microcosmos.archive import columns
 from microcosmos_server.archives import reading
 from microcosmos_server.attempts.claim import claim
+from microcosmos_server.creatures.storage import creature_columns, insert_and_lock
 from microcosmos_server.renderings import storage as renderings
-from microcosmos_server.tables import AUDIT
+from microcosmos_server.tables import AUDIT, Creature
 
 MEASURES = "displacement,bending_effort"
 BINARY = {"Accept": columns.MEDIA_TYPE}
@@ -51,6 +53,40 @@ def test_columns_as_bytes_say_what_json_says(api, services, run_id, record, path
     assert as_json(header, arrays) == plain.json()
     assert len(arrays["cell"]) > 0
     assert True in plain.json()["trusted"]
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_unknown_parameters_make_no_new_answer(api, run_id, record, monkeypatch, path):
+    record(1, {5: 1.0, 3: 2.0})
+    made = []
+    name = {"archive": "archive", "archive/history": "history"}.get(path, "reprojected")
+    read = getattr(reading, name)
+    monkeypatch.setattr(reading, name, lambda *given: made.append(given) or read(*given))
+    url = f"runs/{run_id}/{path}"
+    tags = {api.get(url, params=asked(path) | {"x": x}).headers["etag"] for x in range(3)}
+    assert (len(tags), len(made)) == (1, 1)
+
+
+@pytest.mark.postgresql
+def test_what_was_measured_here_replaces_what_a_file_says(
+    api, services, run_id, record, report
+):
+    """The name is a hash of the identity, so a file may say anything about its measures."""
+    (elite,) = report(1, {5: 1.0}).elites
+    measured = elite.measured | {"measures": {"displacement": 999.0, "bending_effort": 0.1}}
+    row = creature_columns(elite.creature, elite.identity, measured, None, "CC0-1.0")
+    with services.sessions.write.begin() as session:
+        insert_and_lock(session, [row | {"imported": True}])
+    record(1, {5: 1.0})
+    url = f"runs/{run_id}/archive"
+    found = api.get(url, params={"measures": MEASURES}).json()["measures"]
+    assert found == {name: [elite.measured["measures"][name]] for name in MEASURES.split(",")}
+    # What was measured here stays, whoever imports the creature afterwards.
+    forged = row | {"measured": measured}
+    with services.sessions.write.begin() as session:
+        session.execute(update(Creature).values(imported=False))
+        insert_and_lock(session, [forged])
+        assert session.scalars(select(Creature.measured)).one() == elite.measured
 
 
 @pytest.mark.parametrize(

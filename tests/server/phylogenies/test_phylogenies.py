@@ -114,7 +114,7 @@ def test_the_tree_as_of_a_generation_is_the_one_that_it_was(api, run_id, write):
 def test_what_became_of_initial_creatures_later_is_not_in_an_earlier_tree(
     api, run_id, write, start_from, upload
 ):
-    upload(reports.identity(7))
+    upload(reports.identity(7), reports.report(1, {7: 7.0}).elites[0].measured, None)
     write([(2, 5, ())], [(8, 5, ())])
     fork = start_from(2, 7)
     write([(2, 5, ())], run=fork)
