@@ -16,6 +16,7 @@ from rq.worker import SimpleWorker
 from sqlalchemy import select, update
 from sqlalchemy.exc import OperationalError
 
+from microcosmos_server.attempts import claim as claiming
 from microcosmos_server.attempts.claim import claim
 from microcosmos_server.attempts.leases import Progress
 from microcosmos_server.core import processes
@@ -209,6 +210,24 @@ def test_a_job_that_cannot_use_the_database_blames_no_run(
     monkeypatch.setattr(readiness.time, "monotonic", lambda now=time.monotonic: now() + 61)
     assert busy.readiness.check()
     assert busy.readiness.problem is None
+
+
+@pytest.mark.parametrize("state", ["57014", "55P03", "25P03"])
+def test_a_claim_that_takes_too_long_blames_its_run(services, run_id, monkeypatch, state):
+    """Else the worker would try it for ever, and nothing else."""
+
+    class Ended(Exception):
+        sqlstate = state
+
+    def end(*_):
+        raise OperationalError("", {}, Ended())
+
+    monkeypatch.setattr(claiming, "claim", end)
+    with (
+        pytest.raises(OperationalError),
+        claiming.claimed(services, run_id, "worker", lambda: False),
+    ):
+        pass
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import time
 from hashlib import sha256
 from pathlib import Path
 from queue import Queue
@@ -132,6 +133,32 @@ def test_a_renderer_loads_a_changed_file(settings, monkeypatch):
         jobs.prepare_job()
         jobs.prepare_job()
     assert loaded == ["device", GOOD, f"{GOOD}# Changed."]
+
+
+def test_a_listing_that_fails_is_tried_again(settings, monkeypatch):
+    """A process cannot start while there is no memory; importing may take too long once."""
+    chosen, outcomes = settings(mine=GOOD), Queue()
+    failed = plugins.PluginReport(is_complete=False)
+
+    def listing(_):
+        outcome = outcomes.get_nowait()
+        if isinstance(outcome, Exception):
+            raise outcome
+        return outcome
+
+    monkeypatch.setattr(plugins, "list_plugins", listing)
+    monkeypatch.setattr(plugins, "AGAIN_SECONDS", 0.02)
+    for outcome in (failed, OSError("no memory"), plugins.PluginReport()):
+        outcomes.put(outcome)
+    watcher = plugins.PluginWatcher(chosen, 0.01)
+    watcher.start()
+    end = time.monotonic() + 10
+    while not watcher.report.is_complete and time.monotonic() < end:
+        time.sleep(0.01)
+    watcher.end()
+    watcher.join()
+    assert watcher.report.is_complete
+    assert outcomes.empty()
 
 
 CARRY_OUT = """

@@ -9,6 +9,7 @@ import logging
 import os
 import sys
 import threading
+import time
 from collections.abc import Sequence
 from contextlib import redirect_stdout, suppress
 from dataclasses import dataclass
@@ -23,6 +24,8 @@ from microcosmos_server.core import processes
 from microcosmos_server.settings import Settings
 
 IMPORT_SECONDS = 120.0
+AGAIN_SECONDS = 60.0
+"""Time after which plug-ins are listed again if the process that imports them failed."""
 
 log = logging.getLogger(__name__)
 
@@ -45,6 +48,8 @@ class PluginReport:
 
     plugins: tuple[dict[str, Any], ...] = ()
     unloaded: tuple[dict[str, Any], ...] = ()
+    is_complete: bool = True
+    """False if the process that imports them failed."""
 
     @property
     def plugin_versions(self) -> set[str]:
@@ -69,7 +74,8 @@ def list_plugins(settings: Settings) -> PluginReport:
     except (ValueError, IndexError) as error:
         reason = f"the process that imported it printed no list ({error})"
     log.warning("No plug-ins: %s", reason)
-    return PluginReport(unloaded=tuple({"module": one, "reason": reason} for one in named))
+    unloaded = tuple({"module": one, "reason": reason} for one in named)
+    return PluginReport(unloaded=unloaded, is_complete=False)
 
 
 class PluginWatcher(threading.Thread):
@@ -82,6 +88,7 @@ class PluginWatcher(threading.Thread):
         self._ended = False
         self._digests = digests(settings)
         self.report = list_plugins(settings)
+        self._listed_at = time.monotonic()
         self.reported: PluginReport | None = None
         """The report that the database has."""
 
@@ -91,8 +98,19 @@ class PluginWatcher(threading.Thread):
             self._due.clear()
             if self._ended:
                 return
-            if (now := digests(self._settings)) != self._digests:
-                self._digests, self.report = now, list_plugins(self._settings)
+            try:
+                self._renew()
+            except Exception:  # Without this thread the worker would take no run any more.
+                log.exception("Plug-ins are not listed")
+
+    def _renew(self) -> None:
+        now = digests(self._settings)
+        failed = (
+            not self.report.is_complete and time.monotonic() > self._listed_at + AGAIN_SECONDS
+        )
+        if now != self._digests or failed:
+            self.report = list_plugins(self._settings)
+            self._digests, self._listed_at = now, time.monotonic()
 
     def is_current(self) -> bool:
         """Return whether the database has the plug-ins of the files as they are now.

@@ -1,7 +1,7 @@
 """Read an archive, its history or a re-projection from the database."""
 
-from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from math import isfinite
 from threading import Lock
@@ -78,6 +78,8 @@ def learned_of(services: Services, run: Run, file: Artifact | None) -> LearnedMe
     container = run.spec["archive"].get("container") or {}
     if container.get("kind") != "learned" or file is None:
         return None
+    if segments.whole(file).size > segments.LARGEST:
+        return None
     found = _axes.get(services, file)
     return None if found is None else LearnedMeasures(found, container["bins"])
 
@@ -87,20 +89,21 @@ class _KeptAxes:
 
     def __init__(self, number: int):
         self._number = number
-        self._kept = OrderedDict[str, LearnedAxes | None]()
+        self._kept = dict[str, LearnedAxes | None]()
         self._reading = Lock()
 
     def get(self, services: Services, file: Artifact) -> LearnedAxes | None:
         sha = segments.whole(file).sha256
+        with suppress(KeyError):
+            return self._kept[sha]
         with self._reading:  # One file at a time is in memory.
             if sha not in self._kept:
                 try:
                     self._kept[sha] = learned_axes(segments.read(services.artifacts, file))
                 except ValueError:  # It ended before any axes were learned.
                     self._kept[sha] = None
-            self._kept.move_to_end(sha)
             while len(self._kept) > self._number:
-                self._kept.popitem(last=False)
+                self._kept.pop(next(iter(self._kept)))
             return self._kept[sha]
 
 
@@ -115,8 +118,8 @@ def stored_names(names: Sequence[str], learned: LearnedMeasures | None) -> list[
     return list(dict.fromkeys((*plain, *learned.axes.measures)))
 
 
-# About 50 MB of JSON.
-HISTORY_ENTRIES = 400_000
+HISTORY_ENTRIES, HISTORY_VALUES = 400_000, 4_000_000
+"""Limits on a history: some 100 MB of JSON. An entry has five values and its measures."""
 
 
 def archive(
@@ -156,7 +159,8 @@ def history(
     """Return every elite that ever entered; raise `DomainError` for too many."""
     own = learned_of(services, run, file)
     names = _requested(measures, _recorded(session, run, own))
-    _refuse_long(session, run)
+    most = min(HISTORY_ENTRIES, HISTORY_VALUES // (5 + len(names)))
+    _refuse_long(session, run, most)
 
     def ordered(stored: Sequence[str]) -> Select[*tuple[Any, ...]]:
         return elites.all_time(run, stored).order_by(Elite.generation, Elite.cell)
@@ -170,7 +174,7 @@ def reprojected(session: Session, run: Run, axes: str, measures: str) -> Reproje
     """Return the archive over other axes; raise `DomainError` for impossible ones."""
     recorded = recorded_measures.recorded(session, run)
     names, more = list(filter(None, axes.split(","))), _requested(measures, recorded)
-    _refuse_long(session, run)
+    _refuse_long(session, run, HISTORY_ENTRIES)
     return _reproject(session, run, names, more, [one.name for one in recorded])
 
 
@@ -182,13 +186,13 @@ def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:
     return names
 
 
-def _refuse_long(session: Session, run: Run) -> None:
+def _refuse_long(session: Session, run: Run, most: int) -> None:
     counted = select(func.count()).select_from(Elite).where(elites.recorded_in(run))
     entries = session.execute(counted).scalar_one()
-    if entries > HISTORY_ENTRIES:
+    if entries > most:
         detail = (
-            f"The history of this archive has {entries:,} entries, more than the "
-            f"{HISTORY_ENTRIES:,} that one answer holds. Read single generations at "
+            f"The history of this archive has {entries:,} entries, more than the {most:,} that "
+            "one answer with these measures holds. Read single generations at "
             f"/api/v1/runs/{run.id}/archive?generation=."
         )
         raise Invalid(detail, title="History too long")

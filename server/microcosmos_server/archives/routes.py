@@ -51,7 +51,7 @@ async def read_archive(
     `after`, a generation, only the elites that entered later are returned, and only the cells
     that were emptied later.
     """
-    of, asked = (shown.services, shown.run, shown.file), (generation, after, measures)
+    of, asked = (shown.services, shown.run, shown.file), (generation, after, _sorted(measures))
     return await shown.answer(lambda session: reading.archive(session, *of, *asked), *asked)
 
 
@@ -61,8 +61,8 @@ async def read_history(shown: ShownArchiveDep, measures: str = "") -> Response:
 
     Each generation's archive follows from them.
     """
-    of = (shown.services, shown.run, shown.file)
-    return await shown.answer(lambda session: reading.history(session, *of, measures), measures)
+    of, asked = (shown.services, shown.run, shown.file), _sorted(measures)
+    return await shown.answer(lambda session: reading.history(session, *of, asked), asked)
 
 
 @router.get(
@@ -79,10 +79,15 @@ async def read_reprojection(
     separated by commas. An axis of the archive keeps its ends and bins; any other has the
     default ends of its measure and 24 bins. `measures` names further columns to return.
     """
-    asked = (axes, measures)
+    asked = (axes, _sorted(measures))
     return await shown.answer(
         lambda session: reading.reprojected(session, shown.run, *asked), *asked
     )
+
+
+def _sorted(measures: str) -> str:
+    """Return one text for all texts that name the same measures, which have one answer."""
+    return ",".join(sorted(set(filter(None, measures.split(",")))))
 
 
 @router.get("/archive/poses", **BINARY, dependencies=[MAY_READ_SHARED])

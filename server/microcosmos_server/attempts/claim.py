@@ -30,6 +30,9 @@ logger = logging.getLogger(__name__)
 
 UNUSABLE = (OperationalError, InterfaceError, ProgrammingError, TimeoutError)
 """Errors of a database that refuses connections, is away, or has other tables."""
+TOO_LONG = ("57014", "55P03", "25P03", "25P04")
+"""States of PostgreSQL that end what takes too long. That may be due to the run itself, which
+would be tried for ever."""
 UNCLAIMED = 75
 """Exit status of a process that could not use the database: EX_TEMPFAIL of sysexits.h."""
 
@@ -104,6 +107,8 @@ def claimed(
     try:
         attempt = claim(services, run_id, worker)
     except UNUSABLE as error:
+        if getattr(getattr(error, "orig", None), "sqlstate", None) in TOO_LONG:
+            raise
         raise Unclaimed from error
     if attempt is None:
         yield None

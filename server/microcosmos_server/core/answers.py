@@ -30,6 +30,8 @@ class AnswerCache:
         # A pool of its own: one archive may take seconds, and FastAPI runs all other routes in
         # its 40 threads.
         self._pool = ThreadPoolExecutor(threads, thread_name_prefix="answers")
+        # One thread, so that anonymous requests never have all.
+        self._anonymous_pool = ThreadPoolExecutor(1, thread_name_prefix="anonymous")
         self._kept = OrderedDict[str, bytes]()
         self._size = 0
         self._making = dict[str, asyncio.Task[bytes]]()
@@ -49,13 +51,16 @@ class AnswerCache:
             if len(self._making) >= (self.waiting // 4 if anonymous else self.waiting):
                 detail = "The server prepares many answers already; try again."
                 raise Unavailable(detail, title="Busy", headers=RETRY_AFTER)
-            self._making[tag] = asyncio.create_task(self._make(tag, make))
+            pool = self._anonymous_pool if anonymous else self._pool
+            self._making[tag] = asyncio.create_task(self._make(tag, make, pool))
         # Others wait for the same bytes, so a client that leaves must not cancel them.
         return await asyncio.shield(self._making[tag])
 
-    async def _make(self, tag: str, make: Callable[[], bytes]) -> bytes:
+    async def _make(
+        self, tag: str, make: Callable[[], bytes], pool: ThreadPoolExecutor
+    ) -> bytes:
         try:
-            content = await asyncio.get_running_loop().run_in_executor(self._pool, make)
+            content = await asyncio.get_running_loop().run_in_executor(pool, make)
         finally:
             # Also after an error, which is not kept: the next request tries again
             # (tests/server/core/test_answers.py).
@@ -69,7 +74,8 @@ class AnswerCache:
         return content
 
     def close(self) -> None:
-        self._pool.shutdown(cancel_futures=True)
+        for pool in (self._pool, self._anonymous_pool):
+            pool.shutdown(cancel_futures=True)
 
 
 def tag_of(*parts: Any) -> str:

@@ -24,8 +24,9 @@ TIMEOUT_MS = 15_000
 KEPT_CONNECTIONS, MAX_CONNECTIONS = 5, 15
 """Connections that a process keeps open, and the most that it uses at once."""
 REQUEST_CONNECTIONS = 10
-"""The most that requests hold while they wait for a thread: fewer than `MAX_CONNECTIONS`. Else
-all connections could wait for threads, and all threads for connections."""
+"""The most requests that hold a session while they wait for a thread: fewer than
+`MAX_CONNECTIONS`. Else all connections could wait for threads, and all threads for
+connections."""
 POOL = {"pool_size": KEPT_CONNECTIONS, "max_overflow": MAX_CONNECTIONS - KEPT_CONNECTIONS}
 STATEMENT_SECONDS = 4 * TIMEOUT_MS / 1000
 """Longest time of a statement, which PostgreSQL itself ends."""

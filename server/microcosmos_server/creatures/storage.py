@@ -6,7 +6,7 @@ from operator import itemgetter
 from typing import Any, cast
 from uuid import UUID
 
-from sqlalchemy import Select, Text, case, func, literal_column, select, update
+from sqlalchemy import Select, Text, case, func, literal_column, or_, select, update
 from sqlalchemy import cast as sql_cast
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
@@ -49,16 +49,21 @@ def insert_and_lock(session: Session, rows: Sequence[dict[str, Any]]) -> None:
     """Insert creatures. Existing ones cannot be deleted before the transaction ends.
 
     An existing creature without a pose stream gets the new one. What somebody's file says that
-    it measured gives way to the evaluation here: the name is a hash of the identity alone.
+    it measured gives way to the first evaluation here: the name is a hash of the identity
+    alone.
     """
     if rows:
         # The update takes the lock of the row, also if it changes nothing.
         columns = Creature.__table__.c
         poses, measured = (literal_column(f"excluded.{name}") for name in ("poses", "measured"))
-        here = columns.imported & (func.coalesce(sql_cast(measured, Text), "null") != "null")
+        found = [
+            select(table.creature).where(table.creature == columns.sha256).exists()
+            for table in (Elite, Result)
+        ]
+        given = func.coalesce(sql_cast(measured, Text), "null") != "null"
         values = {
             "poses": func.coalesce(columns.poses, poses),
-            "measured": case((here, measured), else_=columns.measured),
+            "measured": case((or_(*found) | ~given, columns.measured), else_=measured),
         }
         insert_or_update(session, Creature, rows, ["sha256"], values)
 

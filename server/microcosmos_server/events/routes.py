@@ -2,7 +2,7 @@
 
 import asyncio
 import logging
-from collections.abc import AsyncIterable, AsyncIterator, Collection, Iterator
+from collections.abc import AsyncIterable, AsyncIterator, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import Annotated, Any
@@ -20,8 +20,8 @@ from ..services.messages import RESET
 QUEUE_SIZE, QUEUE_LENGTH = 1000, 16_000_000
 """Events that wait for a slow listener, and their length in characters; with more it has to
 fetch everything again."""
-PAGE = 100
-"""Events to read at once: each may have many kilobytes."""
+PAGE, PAGE_LENGTH = 100, 1_000_000
+"""Most events to read at once, and their length in bytes: one may have a megabyte."""
 # A closing server waits at most this long for a read to end.
 BLOCK_MS = 1000
 
@@ -37,6 +37,18 @@ class Entry:
 
     def sent(self) -> ServerSentEvent:
         return ServerSentEvent(id=self.id, event=self.kind, raw_data=self.data)
+
+
+@dataclass
+class Pace:
+    """The number of events to read at once: few of long ones, which clients read slowly."""
+
+    count: int = 1
+
+    def note(self, entries: Sequence[Entry]) -> None:
+        """Take the next number from the length of the last ones."""
+        mean = sum(len(one.data) for one in entries) / len(entries) if entries else 0
+        self.count = max(1, min(PAGE, 4 * self.count, int(PAGE_LENGTH / (mean + 1))))
 
 
 @dataclass(eq=False)
@@ -83,6 +95,7 @@ class Fanout:
         self.listeners: set[Listener] = set()
         self.connected = False
         self.closed = False
+        self._pace = Pace()
 
     async def start(self) -> None:
         """Find the end of the stream; `run` does it later if Redis does not answer."""
@@ -98,8 +111,11 @@ class Fanout:
                     self.read_up_to = await self._newest()
                     self._broadcast(Entry(self.read_up_to, RESET))
                     self.connected = True
-                found = await self.redis.xread({self.stream: self.read_up_to}, PAGE, BLOCK_MS)
-                for entry in (_entry(*item) for _, items in found or [] for item in items):
+                at = {self.stream: self.read_up_to}
+                found = await self.redis.xread(at, self._pace.count, BLOCK_MS)
+                entries = [_entry(*item) for _, items in found or [] for item in items]
+                self._pace.note(entries)
+                for entry in entries:
                     self.read_up_to = entry.id
                     self._broadcast(entry)
             except TimeoutError:
@@ -136,9 +152,9 @@ class Fanout:
             elif not await self._contains(after):
                 yield Entry(start, RESET).sent()
             else:
-                start = after
-                while page := await self._page(start):
-                    for entry in (_entry(*item) for item in page):
+                start, pace = after, Pace()
+                while page := await self._page(start, pace):
+                    for entry in page:
                         start = entry.id
                         if run in (None, entry.run) or entry.kind == RESET:
                             yield entry.sent()
@@ -174,8 +190,11 @@ class Fanout:
         for listener in self.listeners:
             listener.put(entry)
 
-    async def _page(self, after: str) -> Any:
-        return await self.redis.xrange(self.stream, min=f"({after}", count=PAGE)
+    async def _page(self, after: str, pace: "Pace") -> list[Entry]:
+        found = await self.redis.xrange(self.stream, min=f"({after}", count=pace.count)
+        entries = [_entry(*item) for item in found]
+        pace.note(entries)
+        return entries
 
     async def _newest(self) -> str:
         # Of all events, also of those that were trimmed since.

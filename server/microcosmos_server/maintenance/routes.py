@@ -21,7 +21,7 @@ from microcosmos.version import VERSION
 from ..auth.authorize import MAY_ADMINISTER, MAY_READ, PUBLIC
 from ..core import static_files
 from ..core.schemas import Wire
-from ..services.services import Services, ServicesDep, SessionDep
+from ..services.services import Services, ServicesDep
 from ..settings import existing
 from ..storage import mark, space
 from ..storage.artifacts import Artifacts
@@ -246,9 +246,7 @@ class Writable:
 
 
 @outside.get("/readyz", responses={503: {"model": Readiness}}, dependencies=[PUBLIC])
-def ready(
-    services: ServicesDep, session: SessionDep, request: Request, response: Response
-) -> Readiness:
+def ready(services: ServicesDep, request: Request, response: Response) -> Readiness:
     found = Readiness(database="ok", redis="ok", store="ok", disk="ok")
     if not space.folders(services.settings, services.artifacts):
         found.disk = "none"

@@ -4,14 +4,13 @@ from typing import Literal
 
 from fastapi import Request
 from fastapi.responses import JSONResponse, Response
-from sqlalchemy.orm import Session
 
 from ..core.api import Answers, named
 from ..core.schemas import Wire
 from ..queue.jobs import KINDS
 from ..services.services import Services
 from ..storage import ranges
-from ..tables import Artifact, Creature
+from ..tables import Artifact
 from . import storage
 
 
@@ -52,19 +51,17 @@ class Measurement(Wire):
 PENDING: Answers = {202: {"model": Rendering}}
 
 
-def existing(
-    request: Request, row: Creature, session: Session, services: Services, kind: str
-) -> Response | None:
+def existing(request: Request, sha: str, services: Services, kind: str) -> Response | None:
     """Return the answer with a rendering, or None if it does not exist."""
     headers: dict[str, str] = {}
     if "." in kind:  # A file for people.
-        headers = named(f"creature-{row.sha256[:12]}.{kind.rpartition('.')[2]}", "inline")
+        headers = named(f"creature-{sha[:12]}.{kind.rpartition('.')[2]}", "inline")
 
     def send(artifact: Artifact) -> Response:
         media_type = KINDS[kind].media_type
         return ranges.file(request, services.artifacts, artifact, headers, media_type)
 
-    return storage.read(session, services, row.sha256, kind, send)
+    return storage.read(services, sha, kind, send)
 
 
 def enqueued(services: Services, sha: str, kind: str, *, anonymous: bool = False) -> Response:

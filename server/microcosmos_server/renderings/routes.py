@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import JSONResponse, Response
-from sqlalchemy.orm import Session
+from sqlalchemy import select
 
 from microcosmos import naming
 from microcosmos.archive import columns, poses
@@ -26,7 +26,7 @@ from ..core.errors import Invalid, NotFound
 from ..core.json_body import json_route
 from ..creatures.deps import CreatureDep
 from ..queue.jobs import FIRST, KINDS, ON_REQUEST
-from ..services.services import Services, ServicesDep, SessionDep
+from ..services.services import Services, ServicesDep
 from ..specs.parsing import SPEC_BYTES, SpecDep
 from ..storage.artifacts import Artifacts
 from ..tables import AUDIT, EVALUATION, LOOP, MEASUREMENT, PREVIEW, REPLAY, Artifact, Creature
@@ -43,12 +43,15 @@ from .responses import (
 LENGTH = struct.Struct("<I")
 
 
-def find(session: Session, services: Services, row: Creature) -> bytes | None:
+def find(services: Services, sha: str) -> bytes | None:
     """Return the pose stream; None without a stored one and without a replay."""
-    if row.poses is not None:
-        return row.poses
-    make = partial(from_replay, services.artifacts, creature=row.sha256)
-    return storage.read(session, services, row.sha256, REPLAY, make)
+    with services.sessions.read() as session:
+        stored = session.scalars(select(Creature.poses).where(Creature.sha256 == sha)).one()
+    if stored is not None:
+        return stored
+    return storage.read(
+        services, sha, REPLAY, partial(from_replay, services.artifacts, creature=sha)
+    )
 
 
 def from_replay(artifacts: Artifacts, replay: Artifact, creature: str) -> bytes:
@@ -98,10 +101,9 @@ def _reader(kind: str, *, on_request: bool = True) -> Callable[..., Response]:
         request: Request,
         row: CreatureDep,
         share: ShareAccessDep,
-        session: SessionDep,
         services: ServicesDep,
     ) -> Response:
-        if found := existing(request, row, session, services, kind):
+        if found := existing(request, row.sha256, services, kind):
             return found
         if not on_request and (share or not storage.is_ordered(services, row.sha256, kind)):
             return Response(status_code=204)
@@ -143,14 +145,10 @@ creatures.get(
     "/poses", **sends("application/octet-stream", PENDING), dependencies=[MAY_READ_SHARED]
 )
 def read_poses(
-    request: Request,
-    row: CreatureDep,
-    share: ShareAccessDep,
-    session: SessionDep,
-    services: ServicesDep,
+    request: Request, row: CreatureDep, share: ShareAccessDep, services: ServicesDep
 ) -> Response:
     """Return the pose stream; without one, that of the replay, or 202 while it is recorded."""
-    data = find(session, services, row)
+    data = find(services, row.sha256)
     if data is None:
         return enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
     return revalidated(request, Response(data, media_type="application/octet-stream"))
@@ -159,10 +157,8 @@ def read_poses(
 def _poses_exporter(
     ending: str, media_type: str, export: Callable[[PoseStream], str | bytes]
 ) -> Callable[..., Response]:
-    def read(
-        row: CreatureDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
-    ) -> Response:
-        data = find(session, services, row)
+    def read(row: CreatureDep, share: ShareAccessDep, services: ServicesDep) -> Response:
+        data = find(services, row.sha256)
         if data is None:
             return enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
         headers = named(f"poses-{row.sha256[:12]}.{ending}")
@@ -185,14 +181,14 @@ for ending, media_type, export in EXPORTS:
     "/motion", **sends("application/octet-stream", PENDING), dependencies=[MAY_READ_SHARED]
 )
 def read_small_motion(
-    row: CreatureDep, share: ShareAccessDep, session: SessionDep, services: ServicesDep
+    row: CreatureDep, share: ShareAccessDep, services: ServicesDep
 ) -> Response:
     """Return the replay made small, for a page without a server, or 202 like `replay`."""
 
     def small(replay: Artifact) -> bytes:
         return motion.encode(read_motion(partial(services.artifacts.read, replay.path)))
 
-    data = storage.read(session, services, row.sha256, REPLAY, small)
+    data = storage.read(services, row.sha256, REPLAY, small)
     if data is None:
         return enqueued(services, row.sha256, REPLAY, anonymous=share is not None)
     return Response(data, media_type="application/octet-stream")
@@ -205,23 +201,19 @@ def read_verdict(row: CreatureDep) -> Verdict:
 
 
 @creatures.post("/audit", status_code=202, dependencies=[MAY_WRITE])
-def order_audit(row: CreatureDep, session: SessionDep, services: ServicesDep) -> Rendering:
+def order_audit(row: CreatureDep, services: ServicesDep) -> Rendering:
     """Have the creature audited, unless it was; read `audit`."""
-    session.commit()  # A request holds one connection at a time (runs/announce.py).
     if storage.existing(services, row.sha256, AUDIT) is None:
         storage.enqueue(services, row.sha256, AUDIT)
     return Rendering()
 
 
 @creatures.post("/measurement", status_code=202, dependencies=[MAY_WRITE])
-def order_measurement(
-    row: CreatureDep, session: SessionDep, services: ServicesDep
-) -> Rendering:
+def order_measurement(row: CreatureDep, services: ServicesDep) -> Rendering:
     """Have the program that measured it evaluate the creature again; read `measurement`."""
     if not row.measured:
         detail = "The creature's file contains no measurement to compare a new one with."
         raise Invalid(detail, title="Never measured")
-    session.commit()  # As above.
     storage.enqueue_again(services, row.sha256, MEASUREMENT)
     return Rendering()
 

@@ -43,7 +43,6 @@ def find(session: Session, creature: str, kind: str = REPLAY) -> Artifact | None
 
 
 def read(
-    session: Session,
     services: Services,
     creature: str,
     kind: str,
@@ -55,10 +54,9 @@ def read(
     that people order are not: nothing would make them again, and the verdict of an audit holds
     without its file.
     """
-    found = find(session, creature, kind)
-    # Nobody may wait for a connection because the store is slow, and a request holds one
-    # connection at a time (runs/announce.py).
-    session.commit()
+    # Nobody may wait for a connection because the store is slow.
+    with services.sessions.read() as session:
+        found = find(session, creature, kind)
     try:
         return action(found) if found else None
     except FileLost:

@@ -66,8 +66,9 @@ def _session(services: ServicesDep) -> Iterator[Session]:
         yield session
 
 
-# Closed before the answer is sent: a long download must not hold a connection.
-# A request waits for its turn without a thread.
+# Closed before the answer is sent: a long download must not hold a connection. A request waits
+# for its turn without a thread. A route that reads files or waits for Redis must not take it:
+# others would wait, too (tests/server/core/test_http.py).
 SessionDep = Annotated[
     Session, Depends(_session, scope="function", max_concurrency=REQUEST_CONNECTIONS)
 ]

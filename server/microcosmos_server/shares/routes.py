@@ -182,12 +182,11 @@ def read_shared_creatures(share: ShareDep, session: SessionDep) -> SharedCreatur
 
 
 def _preview_reader(kind: str) -> Callable[..., Response]:
-    def read(
-        request: Request, share: ShareDep, session: SessionDep, services: ServicesDep
-    ) -> Response:
-        cover = find_creature(session, share.cover)
-        found = responses.existing(request, cover, session, services, kind)
-        return found or responses.enqueued(services, share.cover, kind, anonymous=True)
+    def read(request: Request, slug: Slug, services: ServicesDep) -> Response:
+        with services.sessions.read() as session:
+            cover = share(request, slug, session).cover
+        found = responses.existing(request, cover, services, kind)
+        return found or responses.enqueued(services, cover, kind, anonymous=True)
 
     return read
 

@@ -21,12 +21,15 @@ from answers import detail, fields
 from microcosmos_server.app import create_app
 from microcosmos_server.core import static_files
 from microcosmos_server.core.connections import Connection
+from microcosmos_server.core.database import REQUEST_CONNECTIONS
 from microcosmos_server.core.errors import StoreUnavailable
 from microcosmos_server.creatures.sandbox import Sandbox
 from microcosmos_server.maintenance.healthcheck import answers
+from microcosmos_server.renderings import storage as renderings
 from microcosmos_server.services.services import connect
 from microcosmos_server.settings import Settings, from_environment
 from microcosmos_server.storage.artifacts import Artifacts
+from microcosmos_server.tables import PREVIEW, REPLAY
 
 ROUTER = Path(__file__).parents[3] / "web" / "src" / "store" / "router.ts"
 
@@ -42,6 +45,51 @@ def test_many_requests_at_once_wait_for_each_other_and_all_are_answered(address,
             return await asyncio.gather(*(client.get(url) for _ in range(100)))
 
     assert [one.status_code for one in asyncio.run(ask())] == [200] * 100
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        *("api/v1/creatures/{creature}/replay", "api/v1/creatures/{creature}/poses"),
+        *("api/v1/creatures/{creature}/motion", "api/v1/creatures/{creature}/poses.csv"),
+        *("api/v1/creatures/{creature}/preview.png", "api/v1/shares/{slug}/preview.png"),
+        *("api/v1/runs/{run}/archive.h5", "readyz"),
+    ],
+)
+def test_a_slow_store_keeps_no_place_from_other_requests(
+    address, api, services, run_id, attempt, record, known, path, monkeypatch
+):
+    """Each takes a thread, of which there are more than connections."""
+    record(1, {5: 1.0})
+    attempt.save(1, b"data")
+    for kind in (REPLAY, PREVIEW):
+        renderings.save(services, known, kind, b"a file")
+    slug = api.post("shares", json={"creature": known}).json()["slug"]
+    go, read, waiting = threading.Event(), Artifacts.read, threading.Semaphore(0)
+
+    def slowly(self, *given, **named):
+        waiting.release()
+        go.wait(20)
+        return read(self, *given, **named)
+
+    monkeypatch.setattr(Artifacts, "read", slowly)
+    url = f"{address}/{path.format(creature=known, run=run_id, slug=slug)}"
+
+    async def ask():
+        async with httpx.AsyncClient(timeout=20, verify=False) as client:
+            number = REQUEST_CONNECTIONS + 2
+            asked = [asyncio.create_task(client.get(url)) for _ in range(number)]
+            for _ in range(number):
+                assert await asyncio.to_thread(waiting.acquire, timeout=10)
+            found = await client.get(f"{address}/api/v1/runs", timeout=5)
+            go.set()
+            await asyncio.gather(*asked)
+            return found
+
+    try:
+        assert asyncio.run(ask()).status_code == 200
+    finally:
+        go.set()
 
 
 @pytest.fixture
@@ -318,6 +366,8 @@ def test_the_sandbox_inherits_no_variable_that_may_be_a_secret(monkeypatch):
     with closing(sandbox):
         sandbox.start()
         assert sandbox._process
-        inherited = psutil.Process(sandbox._process.pid).environ()
+        inherited, end = {}, time.monotonic() + 10
+        while not inherited and time.monotonic() < end:  # It has forked, and not begun yet.
+            inherited = psutil.Process(sandbox._process.pid).environ()
     assert "PATH" in inherited
     assert not [name for name, value in inherited.items() if value == "secret"]

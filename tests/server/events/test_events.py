@@ -262,12 +262,9 @@ def test_what_waits_for_a_slow_listener_is_limited_in_length(monkeypatch):
     assert listener.length == 0
 
 
-def test_events_trimmed_while_a_client_catches_up_are_not_skipped_in_silence(
-    services, flush, monkeypatch
-):
+def test_events_trimmed_while_a_client_catches_up_are_not_skipped_in_silence(services, flush):
     """It reads a page at its own pace; long events may trim many others meanwhile."""
     flush()
-    monkeypatch.setattr(routes, "PAGE", 2)
     for _ in range(9):
         services.events.publish("run", uuid4(), {})
     services.events.messenger.flush(10)
@@ -286,7 +283,18 @@ def test_events_trimmed_while_a_client_catches_up_are_not_skipped_in_silence(
         await fanout.redis.aclose()
         return sent
 
-    assert asyncio.run(catch_up()) == [(ids[1], "run"), (ids[2], "run"), (ids[-1], "reset")]
+    assert asyncio.run(catch_up()) == [(ids[1], "run"), (ids[-1], "reset")]
+
+
+def test_few_long_events_are_read_at_once():
+    """What is read waits in memory for a client that takes it at its own pace."""
+    long, short = (routes.Entry("1-0", "elites", data="x" * size) for size in (1_000_000, 10))
+    pace, counts = routes.Pace(), []
+    for entry in (short, short, short, short, long, long, short):
+        counts.append(pace.count)
+        pace.note([entry] * pace.count)
+    assert counts == [1, 4, 16, 64, 100, 1, 1]
+    assert pace.count == 4
 
 
 @pytest.fixture

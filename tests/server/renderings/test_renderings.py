@@ -239,10 +239,11 @@ def test_a_lost_rendering_takes_one_connection_at_a_time(services, known, monkey
         return fault(*given)
 
     monkeypatch.setattr(mark, "fault", looked)
-    with closing(connect(services.settings)) as own, own.sessions.read() as session:
-        assert renderings.read(session, own, known, GIF, lost) is None
+    with closing(connect(services.settings)) as own:
+        assert renderings.read(own, known, GIF, lost) is None
         assert own.sessions.engine.pool.checkedout() == 0
-        assert renderings.find(session, known, GIF) is None
+        with own.sessions.read() as session:
+            assert renderings.find(session, known, GIF) is None
     assert held == [0]
 
 

@@ -149,8 +149,8 @@ export const readTargets = (id: string) => success(client.GET("/runs/{run_id}/ta
 
 export const readStatistics = (of: wire.ComparedRuns, measures: string) =>
   typed<wire.Statistics>(client.GET("/statistics", { params: { query: { ...of, measures } } }));
-export const readSweeps = (limit: number) =>
-  typed<wire.SweepPage>(client.GET("/sweeps", { params: { query: { limit } } }));
+export const readSweeps = (limit: number, cursor?: string) =>
+  typed<wire.SweepPage>(client.GET("/sweeps", { params: { query: { limit, cursor } } }));
 export const readSweep = (id: string) => typed<wire.Sweep>(client.GET("/sweeps/{sweep_id}", sweep(id)));
 export const readSweepSummary = (id: string, points: number) =>
   typed<wire.SweepSummary>(client.GET("/sweeps/{sweep_id}/summary", sweep(id, { points })));

@@ -4057,7 +4057,7 @@ export interface components {
             /** Problem */
             problem: string | null;
             /** Problem Kind */
-            problem_kind: ("untested" | "device" | "self-test" | "store" | "schema") | null;
+            problem_kind: ("untested" | "device" | "self-test" | "store" | "schema" | "database") | null;
             /** Run */
             run: string | null;
             /**

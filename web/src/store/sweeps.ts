@@ -14,7 +14,18 @@ const POINTS = 300;
 export function useSweeps(limit: number, enabled: boolean): Loaded<SweepPage | null> {
   const version = useStore((state) => (enabled ? `${state.epoch} ${totalOf(state.sweepVersions)}` : ""));
   const throttled = useThrottled(version);
-  return useFetched(async () => (enabled ? await api.readSweeps(limit) : null), [throttled, limit, enabled]);
+  return useFetched(async () => (enabled ? await readSweepsUpTo(limit) : null), [throttled, limit, enabled]);
+}
+
+/** The newest sweeps; a page with long specs has fewer than were asked for. */
+export async function readSweepsUpTo(limit: number): Promise<SweepPage> {
+  let { items, next } = await api.readSweeps(limit);
+  while (next !== null && items.length < limit) {
+    const more = await api.readSweeps(limit - items.length, next);
+    items = [...items, ...more.items];
+    next = more.next;
+  }
+  return { items, next };
 }
 
 const totalOf = (counts: ReadonlyMap<string, number>) =>
