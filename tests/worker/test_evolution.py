@@ -135,3 +135,24 @@ def test_an_extended_run_takes_back_the_reevaluation_at_its_first_end(services):
     for one in (found, file):
         assert one.searched.tolist() == list(range(8, 65, 8))
     assert some.searched.tolist() == [8, 24, 48, 64]  # Of generations 1, 3, 6 and 8.
+
+
+def test_a_run_whose_checkpoint_has_another_spec_waits_for_a_person(
+    services, run_id, attempt, row
+):
+    """As after an upgrade: another attempt would be refused, too."""
+
+    def die():
+        raise Died
+
+    with pytest.raises(Died):
+        compute(attempt(during=2, act=die))
+    assert row().checkpoint_generation == 1
+    with services.sessions.write.begin() as session:
+        run = session.get_one(Run, run_id)
+        run.status, run.worker = "queued", None
+        run.spec = run.spec | {"world": run.spec["world"] | {"viscosity": 0.123}}
+    compute(attempt())
+    assert row().status == "paused"
+    assert "`spec` in the file must be the run's own" in row().warning
+    assert row().checkpoint_generation == 1

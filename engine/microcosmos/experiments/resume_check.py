@@ -2,10 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from typing import Any
-
-from ..spec import parse
 
 
 class OtherSpec(ValueError):
@@ -29,8 +26,7 @@ def devices_of(
     Raises `OtherSpec` for another spec, and `OtherDevice` for another kind of device unless
     `other_device` allows it.
     """
-    held, wanted = (dict(_values(_complete(text))) for text in (attributes["spec"], spec))
-    _refuse_other(held, wanted)
+    _refuse_other(*(dict(_values(json.loads(text))) for text in (attributes["spec"], spec)))
     devices = json.loads(attributes["device"])
     if devices[-1] != device and not other_device:
         raise OtherDevice(
@@ -39,14 +35,6 @@ def devices_of(
             devices[-1],
         )
     return tuple(devices if devices[-1] == device else [*devices, device])
-
-
-def _complete(text: str) -> Any:
-    """Return a spec with the defaults of fields that a later version has added."""
-    document = json.loads(text)
-    with suppress(ValueError):  # A plug-in may be here in another version only.
-        return parse(document).model_dump(mode="json")
-    return document
 
 
 def _refuse_other(held: dict[str, Any], wanted: dict[str, Any]) -> None:
