@@ -21,12 +21,12 @@ from sqlalchemy.types import TypeDecorator
 from ..settings import create_private
 
 TIMEOUT_MS = 15_000
-KEPT_CONNECTIONS, MAX_CONNECTIONS = 5, 15
+KEPT_CONNECTIONS, MAX_CONNECTIONS = 5, 20
 """Connections that a process keeps open, and the most that it uses at once."""
 REQUEST_CONNECTIONS = 10
-"""The most requests that hold a session while they wait for a thread: fewer than
-`MAX_CONNECTIONS`. Else all connections could wait for threads, and all threads for
-connections."""
+"""The most requests that hold a session while they wait for a thread. Else all connections
+could wait for threads, and all threads for connections. Threads of `core.answers` may hold five
+more."""
 POOL = {"pool_size": KEPT_CONNECTIONS, "max_overflow": MAX_CONNECTIONS - KEPT_CONNECTIONS}
 STATEMENT_SECONDS = 4 * TIMEOUT_MS / 1000
 """Longest time of a statement, which PostgreSQL itself ends."""

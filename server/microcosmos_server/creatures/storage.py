@@ -56,8 +56,10 @@ def insert_and_lock(session: Session, rows: Sequence[dict[str, Any]]) -> None:
         # The update takes the lock of the row, also if it changes nothing.
         columns = Creature.__table__.c
         poses, measured = (literal_column(f"excluded.{name}") for name in ("poses", "measured"))
+        # `excluded`, since SQLAlchemy would add the table itself to the subquery.
+        name = literal_column("excluded.sha256")
         found = [
-            select(table.creature).where(table.creature == columns.sha256).exists()
+            select(table.creature).where(table.creature == name).exists()
             for table in (Elite, Result)
         ]
         given = func.coalesce(sql_cast(measured, Text), "null") != "null"

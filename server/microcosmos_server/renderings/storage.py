@@ -127,7 +127,8 @@ def save(services: Services, creature: str, kind: str, data: bytes) -> None:
     with services.sessions.write.begin() as session:
         _delete(session, creature, kind, trusted)
         insert_missing(session, Artifact, [row])
-        keep_file(session, path)
+        if session.get(Artifact, path):  # Another renderer may have saved one at this moment.
+            keep_file(session, path)
 
 
 def _delete(session: Session, creature: str, kind: str, trusted: bool | None = None) -> None:

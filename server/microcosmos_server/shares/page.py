@@ -18,21 +18,22 @@ from ..core import static_files
 from ..core.errors import DomainError
 from ..core.security_headers import POLICY
 from ..renderings import storage as renderings
-from ..services.services import Services, SessionDep
+from ..services.services import Services, ServicesDep
 from ..tables import LOOP, PREVIEW, Creature, Run, Share
 from .access import SLUG, find_live
 
 log = logging.getLogger(__name__)
 
 
-def order_previews(
-    services: Services, session: Session, cover: str, *, anonymous: bool = False
-) -> None:
+def order_previews(services: Services, cover: str, *, anonymous: bool = False) -> None:
     """Enqueue the missing picture and film, the picture first; no request waits."""
+    with services.sessions.read() as session:
+        missing = [
+            kind for kind in (PREVIEW, LOOP) if renderings.find(session, cover, kind) is None
+        ]
     try:
-        for kind in (PREVIEW, LOOP):
-            if renderings.find(session, cover, kind) is None:
-                renderings.enqueue(services, cover, kind, anonymous=anonymous)
+        for kind in missing:
+            renderings.enqueue(services, cover, kind, anonymous=anonymous)
     except (RedisError, renderings.RenderingFailed) as error:
         # The share itself is published: a picture is not worth an error.
         log.warning("The preview of %s is left to its next visitor: %s", cover, error)
@@ -68,7 +69,7 @@ def read_import_page(share: str = "") -> Response:
 @router.get("/s/{slug}")
 @router.get("/s/{slug}/{rest:path}")
 def read_share_page(
-    request: Request, slug: str, session: SessionDep, rest: str = ""
+    request: Request, slug: str, services: ServicesDep, rest: str = ""
 ) -> Response:
     """Return the page itself, which explains a missing, expired or revoked share.
 
@@ -79,14 +80,15 @@ def read_share_page(
     index = (static_files.BUILT / "index.html").read_text()
     headers = {"Content-Security-Policy": EMBEDDABLE} if rest == "embed" else None
     try:
-        share = find_live(session, slug)
+        with services.sessions.read() as session:
+            share = find_live(session, slug)
+            has_film = renderings.find(session, share.cover, LOOP) is not None
+            about = description(session, share)
     except DomainError as error:
         return HTMLResponse(index, error.problem.status, headers=headers)
     request.state.listed = share.listed
-    services: Services = request.app.state.services
-    order_previews(services, session, share.cover, anonymous=True)
-    has_film = renderings.find(session, share.cover, LOOP) is not None
-    found = tags(public_address(request), share, description(session, share), has_film)
+    order_previews(services, share.cover, anonymous=True)
+    found = tags(public_address(request), share, about, has_film)
     return HTMLResponse(with_tags(index, found), headers=headers)
 
 

@@ -132,8 +132,7 @@ def publish(
         read = share_read(request, session, share)
     if share.run_id:
         access.copy_checkpoint(services, share)
-    with services.sessions.read() as session:
-        page.order_previews(services, session, share.cover)
+    page.order_previews(services, share.cover)
     response.status_code = 201 if new else 200
     response.headers["Location"] = f"/api/v1/shares/{share.slug}"
     return read

@@ -7,14 +7,15 @@ from threading import Event
 import httpx
 import numpy as np
 import pytest
+import reports
 from reports import audit
-from sqlalchemy import select
 
 from microcosmos.archive import columns
 from microcosmos_server.archives import reading
 from microcosmos_server.attempts.claim import claim
 from microcosmos_server.creatures.storage import creature_columns, insert_and_lock
 from microcosmos_server.renderings import storage as renderings
+from microcosmos_server.runs.submission import submit
 from microcosmos_server.tables import AUDIT, Creature
 
 MEASURES = "displacement,bending_effort"
@@ -73,7 +74,8 @@ def test_what_was_measured_here_replaces_what_a_file_says(
     api, services, run_id, record, report
 ):
     """The name is a hash of the identity, so a file may say anything about its measures."""
-    (elite,) = report(1, {5: 1.0}).elites
+    other, (elite,) = report(1, {3: 1.0}), report(1, {5: 1.0}).elites
+    claim(services, submit(services, reports.DEMO)[0].id, "other").record(other, 1.0)
     measured = elite.measured | {"measures": {"displacement": 999.0, "bending_effort": 0.1}}
     row = creature_columns(elite.creature, elite.identity, measured, None, "CC0-1.0")
     with services.sessions.write.begin() as session:
@@ -85,7 +87,7 @@ def test_what_was_measured_here_replaces_what_a_file_says(
     # What was measured here first stays, whatever finds the creature again, and on any device.
     with services.sessions.write.begin() as session:
         insert_and_lock(session, [row])
-        assert session.scalars(select(Creature.measured)).one() == elite.measured
+        assert session.get_one(Creature, elite.creature).measured == elite.measured
 
 
 @pytest.mark.parametrize(

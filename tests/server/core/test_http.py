@@ -25,9 +25,11 @@ from microcosmos_server.core.database import REQUEST_CONNECTIONS
 from microcosmos_server.core.errors import StoreUnavailable
 from microcosmos_server.creatures.sandbox import Sandbox
 from microcosmos_server.maintenance.healthcheck import answers
+from microcosmos_server.queue.jobs import Jobs
 from microcosmos_server.renderings import storage as renderings
 from microcosmos_server.services.services import connect
 from microcosmos_server.settings import Settings, from_environment
+from microcosmos_server.storage import space
 from microcosmos_server.storage.artifacts import Artifacts
 from microcosmos_server.tables import PREVIEW, REPLAY
 
@@ -53,26 +55,32 @@ def test_many_requests_at_once_wait_for_each_other_and_all_are_answered(address,
         *("api/v1/creatures/{creature}/replay", "api/v1/creatures/{creature}/poses"),
         *("api/v1/creatures/{creature}/motion", "api/v1/creatures/{creature}/poses.csv"),
         *("api/v1/creatures/{creature}/preview.png", "api/v1/shares/{slug}/preview.png"),
-        *("api/v1/runs/{run}/archive.h5", "readyz"),
+        *("api/v1/runs/{run}/archive.h5", "api/v1/queue", "s/{slug}", "readyz"),
     ],
 )
-def test_a_slow_store_keeps_no_place_from_other_requests(
+def test_a_slow_store_or_redis_keeps_no_place_from_other_requests(
     address, api, services, run_id, attempt, record, known, path, monkeypatch
 ):
     """Each takes a thread, of which there are more than connections."""
     record(1, {5: 1.0})
     attempt.save(1, b"data")
-    for kind in (REPLAY, PREVIEW):
+    for kind in (REPLAY, PREVIEW) if path != "s/{slug}" else ():
         renderings.save(services, known, kind, b"a file")
     slug = api.post("shares", json={"creature": known}).json()["slug"]
     go, read, waiting = threading.Event(), Artifacts.read, threading.Semaphore(0)
 
-    def slowly(self, *given, **named):
+    def slowly_of(function, *given, **named):
         waiting.release()
         go.wait(20)
-        return read(self, *given, **named)
+        return function(*given, **named)
+
+    def slowly(self, *given, **named):
+        return slowly_of(read, self, *given, **named)
 
     monkeypatch.setattr(Artifacts, "read", slowly)
+    free, find = space.free_bytes, Jobs.find
+    monkeypatch.setattr(space, "free_bytes", lambda *given: slowly_of(free, *given))
+    monkeypatch.setattr(Jobs, "find", lambda *given: slowly_of(find, *given))
     url = f"{address}/{path.format(creature=known, run=run_id, slug=slug)}"
 
     async def ask():
