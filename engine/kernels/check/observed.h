@@ -11,6 +11,8 @@ inline microcosmos::Observed observed(const microcosmos::Rollout& r) {
   o.height = r.height, o.width = r.width, o.steps = r.steps, o.nodes = r.nodes;
   o.edges = r.edges, o.joints = r.joints, o.bodies = r.bodies, o.energetic = r.energetic;
   std::copy(r.end_populations, r.end_populations + 9, o.populations);
+  o.driven = r.driven, o.varied = r.varied, o.walled = r.walled, o.walls = r.walls;
+  o.uniform_force = r.uniform_force, o.force_x = r.force_x, o.force_y = r.force_y;
   o.positions = r.positions, o.angles = r.angles, o.ends = r.ends, o.pairs = r.pairs;
   o.present = r.present, o.collected = r.end_collected;
   const bool closed = r.commands != microcosmos::GIVEN;

@@ -82,6 +82,7 @@ std::string read_summary(Observed& o, Numbers number) {
   o.height = number("height"), o.width = number("width"), o.steps = number("steps");
   o.nodes = number("nodes"), o.edges = number("edges"), o.joints = number("joints");
   o.bodies = number("bodies"), o.energetic = number("energetic");
+  o.driven = number("driven"), o.varied = number("varied"), o.walled = number("walled");
   if (!number.error.empty()) return number.error;
   for (int32_t one : {o.height, o.width, o.steps, o.nodes, o.bodies})
     if (one < 1) return "a motion has at least one step of one node in one cell";
@@ -182,6 +183,10 @@ template <class Arrays>
 void name_summary(Arrays& a, Observed& o) {
   const int64_t H = o.height, W = o.width, N = o.nodes, E = o.edges, J = o.joints, T = o.steps;
   for (int i = 0; i < 9; i++) a.in("a plane", &o.populations[i], {H, W});
+  a.in("uniform force", &o.uniform_force, {when(o.driven, 2)});
+  a.in("forces across rows", &o.force_x, {when(o.varied, H), W});
+  a.in("forces along rows", &o.force_y, {when(o.varied, H), W});
+  a.in("walls", &o.walls, {when(o.walled, H), W});
   a.in("positions", &o.positions, {N, 2}), a.in("angles", &o.angles, {E});
   a.in("edges", &o.ends, {E, 2}), a.in("joints", &o.pairs, {J, 2});
   a.in("present", &o.present, {N}), a.in("collected", &o.collected, {when(o.energetic, N)});

@@ -22,6 +22,9 @@ struct Band {
   }
 };
 
+// Forces on the fluid besides those of bodies: none, one for all cells, or one for each.
+enum Drive { UNDRIVEN, UNIFORM, VARIED };
+
 // Planes of populations, of velocities and of forces, and the blocks that bodies touch.
 struct Lattice {
   int height, width, blocks;  // Blocks in a row.
@@ -33,6 +36,7 @@ struct Lattice {
   Array<uint8_t> touched;        // (row, block)
   Array<uint8_t> crossing;       // Rows whose windows continue beyond the edge.
   List<Band> bands;              // Together all rows.
+  Drive drive = UNDRIVEN;
   float push_x = 0, push_y = 0;  // The uniform force.
   Floats pushes_x, pushes_y;     // The force in each cell, if it varies.
 
@@ -53,9 +57,6 @@ struct Lattice {
   }
 };
 
-// Forces on the fluid besides those of bodies: none, one for all cells, or one for each.
-enum Drive { UNDRIVEN, UNIFORM, VARIED };
-
 struct Rates {
   float keep, same, other, even, even45, forced3, forced9, odd1, odd2, push1, push2;
   static constexpr float REST = 4.0f / 9, STRAIGHT = 1.0f / 9, DIAGONAL = 1.0f / 36;
@@ -74,16 +75,21 @@ struct Rates {
   }
 };
 
-// Collide and return the square of the speed before, without the half step of force.
-template <bool FORCED>
-INLINE Vec collide(Vec* f, Vec fx, Vec fy, const Rates& k) {
+// Collide under a force, of which `push` is the part of the surroundings. Return the square of the
+// speed before, with the half step of that part; that of bodies is not known at its time.
+template <bool FORCED, bool PUSHED>
+INLINE Vec collide(Vec* f, Vec fx, Vec fy, Vec push_x, Vec push_y, const Rates& k) {
   const Vec s1 = f[1] + f[2], d1 = f[1] - f[2], s3 = f[3] + f[4], d3 = f[3] - f[4];
   const Vec s5 = f[5] + f[6], d5 = f[5] - f[6], s7 = f[7] + f[8], d7 = f[7] - f[8];
   const Vec deviation = f[0] + (s1 + s3) + (s5 + s7);
   Vec jx = d1 + (d5 + d7), jy = d3 + (d5 - d7);
   const Vec volume = 1.0f / (1.0f + deviation);
   Vec ux = jx * volume, uy = jy * volume;
-  const Vec square = ux * ux + uy * uy;
+  Vec square = ux * ux + uy * uy;
+  if (PUSHED) {
+    const Vec x = (jx + 0.5f * push_x) * volume, y = (jy + 0.5f * push_y) * volume;
+    square = x * x + y * y;
+  }
   // The velocity of Guo's scheme is that at the half step: half of the force has acted.
   if (FORCED) {
     jx = jx + 0.5f * fx, jy = jy + 0.5f * fy;
@@ -145,9 +151,10 @@ __attribute__((noinline)) void advance(Lattice& l, Band& band, const Rates& k) {
         const Vec a = load(g + 2 * y), b = load(g + 2 * y + LANES);
         Vec fx = even(a, b), fy = odd(a, b);
         if (DRIVE != UNDRIVEN) fx = fx + push_x, fy = fy + push_y;
-        square = collide<true>(f, fx, fy, k);
+        square = collide<true, DRIVE != UNDRIVEN>(f, fx, fy, push_x, push_y, k);
       } else
-        square = collide<DRIVE != UNDRIVEN>(f, push_x, push_y, k);
+        square =
+            collide<DRIVE != UNDRIVEN, DRIVE != UNDRIVEN>(f, push_x, push_y, push_x, push_y, k);
       fastest = most_or_nan(square, fastest);
       store(r + y, f[0]);
       store(u2 + y, f[2]);
@@ -191,8 +198,11 @@ inline void join(Lattice& l, const Band& before, const Band& band, const Band& a
   }
 }
 
-// Velocity and 1 / density in the touched blocks of a band, continued beyond the edge.
-inline __attribute__((noinline)) void moments(Lattice& l, const Band& band) {
+// Velocity and 1 / density in the touched blocks of a band, continued beyond the edge. Half a step
+// of the surroundings' force has acted on the velocity.
+template <Drive DRIVE>
+__attribute__((noinline)) void moments(Lattice& l, const Band& band) {
+  Vec push_x = all(l.push_x), push_y = all(l.push_y);
   for (int n = 0; n < band.touched_blocks; n++)
     for (int o = band.block[n], end = o + BLOCK; o < end; o += LANES) {
       const size_t x = o / l.wide, y = o % l.wide;
@@ -202,8 +212,11 @@ inline __attribute__((noinline)) void moments(Lattice& l, const Band& band) {
       const Vec deviation =
           f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]));
       const Vec d5 = f[5] - f[6], d7 = f[7] - f[8], volume = 1.0f / (1.0f + deviation);
-      const Vec ux = ((f[1] - f[2]) + (d5 + d7)) * volume,
-                uy = ((f[3] - f[4]) + (d5 - d7)) * volume;
+      Vec jx = (f[1] - f[2]) + (d5 + d7), jy = (f[3] - f[4]) + (d5 - d7);
+      if (DRIVE == VARIED)
+        push_x = load(l.pushes_x + x * l.row + y), push_y = load(l.pushes_y + x * l.row + y);
+      if (DRIVE != UNDRIVEN) jx = jx + 0.5f * push_x, jy = jy + 0.5f * push_y;
+      const Vec ux = jx * volume, uy = jy * volume;
       store(l.velocity + 2 * size_t(o), zip_low(ux, uy));
       store(l.velocity + 2 * size_t(o) + LANES, zip_high(ux, uy));
       store(l.volume + o, volume);

@@ -72,6 +72,7 @@ class World {
   void run(int number) {
     const Member me = {number, shares_[number], team_};
     const auto flow = chosen_flow();
+    const auto find_moments = chosen_moments();
     begin(me);
     if (me.first()) watch_.start();
     for (int t = 0; t < r_.steps; t++) {
@@ -86,7 +87,7 @@ class World {
       if (r_.fluid || r_.energetic) find_windows(p_, l_, WEIGHTS[r_.delta], me);
       stop(WINDOWS, me);
       if (r_.fluid) {
-        moments(l_, l_.bands[number]);
+        find_moments(l_, l_.bands[number]);
         me.wait();  // A point reads velocities of all bands.
         stop(MOMENTS, me);
         interpolate<false>(p_, l_, l_.velocity, forcing_.velocity_x, forcing_.velocity_y, me);
@@ -155,9 +156,14 @@ class World {
   // Return the collision and streaming for this world, compiled for its forces and its row length.
   void (*chosen_flow() const)(Lattice&, Band&, const Rates&) {
     const bool filled = r_.width % BLOCK == 0;
-    if (r_.varied) return filled ? advance<true, VARIED> : advance<false, VARIED>;
-    if (r_.driven) return filled ? advance<true, UNIFORM> : advance<false, UNIFORM>;
+    if (l_.drive == VARIED) return filled ? advance<true, VARIED> : advance<false, VARIED>;
+    if (l_.drive == UNIFORM) return filled ? advance<true, UNIFORM> : advance<false, UNIFORM>;
     return filled ? advance<true, UNDRIVEN> : advance<false, UNDRIVEN>;
+  }
+
+  void (*chosen_moments() const)(Lattice&, const Band&) {
+    if (l_.drive == VARIED) return moments<VARIED>;
+    return l_.drive == UNIFORM ? moments<UNIFORM> : moments<UNDRIVEN>;
   }
 
   // Command the rest shape of a step, in closed loop; the first member does it for all.

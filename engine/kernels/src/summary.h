@@ -20,7 +20,10 @@ enum Status { OK, NON_FINITE, SUPERSONIC };
 // The observations of a rollout, and its summary.
 struct Observed {
   int32_t height, width, steps, nodes, edges, joints, bodies, energetic;
+  bool driven, varied, walled;                               // As of a rollout.
   const float* populations[9];                               // (height, width) each, at the end
+  const float *uniform_force, *force_x, *force_y;            // (2), (height, width) each
+  const int32_t* walls;                                      // (height, width)
   const float* positions;                                    // (node, 2) at the start
   const float* angles;                                       // (edge) at the start
   const int32_t *ends, *pairs;                               // (edge, 2) nodes, (joint, 2) edges
@@ -393,15 +396,20 @@ class Summary {
     m_.shown[WINDOW_STROKES] = float(window_);
   }
 
-  // Return the status of the motion; the flow at its end counts, without the half step of force.
+  // Return the status of the motion; the flow at its end counts.
   Status status() const {
     const float* const* f = m_.populations;
     float fastest = 0;
     bool valid = true;
     for (size_t i = 0; i < size_t(m_.height) * m_.width; i++) {
       const float across = f[5][i] - f[6][i], along = f[7][i] - f[8][i];
-      const float x = (f[1][i] - f[2][i]) + (across + along);
-      const float y = (f[3][i] - f[4][i]) + (across - along);
+      float x = (f[1][i] - f[2][i]) + (across + along);
+      float y = (f[3][i] - f[4][i]) + (across - along);
+      // Half a step of the surroundings' force has acted; see `moments`.
+      if (!m_.walled || !m_.walls[i]) {
+        if (m_.driven) x += 0.5f * m_.uniform_force[0], y += 0.5f * m_.uniform_force[1];
+        if (m_.varied) x += 0.5f * m_.force_x[i], y += 0.5f * m_.force_y[i];
+      }
       const float straight = (f[1][i] + f[2][i]) + (f[3][i] + f[4][i]);
       const float density =
           1.0f + (f[0][i] + straight + ((f[5][i] + f[6][i]) + (f[7][i] + f[8][i])));

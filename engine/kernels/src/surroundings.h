@@ -10,8 +10,8 @@ namespace microcosmos::ISA {
 class Surroundings {
  public:
   Surroundings(const Rollout& r, Lattice& l) {
-    if (r.driven) l.push_x = r.uniform_force[0], l.push_y = r.uniform_force[1];
-    if (r.varied) find_forces(r, l);
+    if (r.driven) l.push_x = r.uniform_force[0], l.push_y = r.uniform_force[1], l.drive = UNIFORM;
+    if (r.varied || (r.driven && r.walled)) find_forces(r, l);
     if (r.walled) find_walls(r, l);
     if (r.damped) find_sponge(r, l);
   }
@@ -54,13 +54,17 @@ class Surroundings {
     return {before(band.from), before(band.to)};
   }
 
-  // Add the uniform force to that of each cell, so that a collision reads one of them.
+  // Add the uniform force to that of each cell, so that a collision reads one of them. In walls,
+  // which are at rest, there is none.
   void find_forces(const Rollout& r, Lattice& l) {
+    l.drive = VARIED;
     l.pushes_x = Floats(l.row * l.height), l.pushes_y = Floats(l.row * l.height);
     for (int x = 0; x < r.height; x++)
       for (int y = 0; y < r.width; y++) {
-        l.pushes_x[x * l.row + y] = l.push_x + r.force_x[size_t(x) * r.width + y];
-        l.pushes_y[x * l.row + y] = l.push_y + r.force_y[size_t(x) * r.width + y];
+        const size_t given = size_t(x) * r.width + y, cell = x * l.row + y;
+        if (r.walled && r.walls[given]) continue;
+        l.pushes_x[cell] = l.push_x + (r.varied ? r.force_x[given] : 0);
+        l.pushes_y[cell] = l.push_y + (r.varied ? r.force_y[given] : 0);
       }
   }
 

@@ -29,7 +29,7 @@ def deviation(f: Populations) -> Plane:
 
 
 def momentum(f: Populations) -> tuple[Plane, Plane]:
-    """Return the momentum in each cell, without the half step of force of Guo's scheme."""
+    """Return the momentum in each cell, without the half step of force; see `moving`."""
     diagonal, antidiagonal = f[5] - f[6], f[7] - f[8]
     return (
         (f[1] - f[2]) + (diagonal + antidiagonal),

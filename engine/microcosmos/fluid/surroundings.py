@@ -33,6 +33,23 @@ class Surroundings(eqx.Module):
     """A force density of its own in every cell."""
 
 
+def moving(momentum: tuple[Plane, Plane], surroundings: Surroundings) -> tuple[Plane, Plane]:
+    """Return the momentum of the velocity: half a step of the surroundings' force has acted.
+
+    Guo, Zheng and Shi, Phys. Rev. E 65, 046308 (2002). `momentum` is the moment of the
+    populations. The force of bodies is left out: they follow this velocity.
+    """
+    force = None if surroundings.force is None else surroundings.force[:, None, None]
+    if surroundings.force_field is not None:
+        field = surroundings.force_field
+        force = field if force is None else force + field
+    if force is None:
+        return momentum
+    if surroundings.solid is not None:
+        force = jnp.where(surroundings.solid, 0.0, force)
+    return momentum[0] + 0.5 * force[0], momentum[1] + 0.5 * force[1]
+
+
 def advance(
     f: Populations,
     rho: Plane,

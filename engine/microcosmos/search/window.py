@@ -202,8 +202,10 @@ def _operands(
     rods, (height, width) = world.rods, world.size
     collected = end.collected
     graph = (rods.edges, rods.joints, grown_nodes(world))
+    around, features = native.surroundings_of(world)
     operands = [
         *end.populations,
+        *around[:4],  # Forces and walls.
         start.positions,
         start.angles,
         *(jnp.asarray(one, jnp.int32) for one in graph),
@@ -221,5 +223,6 @@ def _operands(
         "joints": len(rods.bend),
         "bodies": world.groups.count,
         "energetic": collected is not None,
+        **{name: features[name] for name in ("driven", "varied", "walled")},
     }
     return operands, sizes

@@ -126,9 +126,11 @@ def with_bodies(world: World, start: State, positions: Vectors) -> State:
 
 
 def flow(world: World, state: State) -> fluid.Vectors:
-    """Return the fluid's velocity in cells per step, without the half step of force."""
-    momentum = fluid.momentum(state.populations)
-    return jnp.stack(momentum) / fluid.density(state.populations)[None]
+    """Return the fluid's velocity in cells per step, with the half step of the surroundings'
+    force.
+    """
+    moving = fluid.moving(fluid.momentum(state.populations), world.surroundings)
+    return jnp.stack(moving) / fluid.density(state.populations)[None]
 
 
 def grown_nodes(world: World) -> Bool[Array, "node"]:

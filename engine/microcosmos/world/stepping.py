@@ -95,8 +95,9 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
         return step_alone(world, state, rest)
     rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
     at = _windows(world, state)
-    # The velocity before the half step of force: this step's force is not known yet.
-    velocity = coupling.interpolate(momentum, coupling.divided(at, rho))
+    # Without the half step of the bodies' own force, which is not known yet.
+    moving = fluid.moving(momentum, world.surroundings)
+    velocity = coupling.interpolate(moving, coupling.divided(at, rho))
     layers, groups = world.form.layers, world.groups.repeated(world.form.layers)
     push, drift = repel(world, state.positions)
     motion = move(world, state, rest, coupling.at_nodes(velocity, layers) + push)
@@ -126,7 +127,7 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
     end = replace(state, populations=populations, positions=positions, angles=motion.angles)
     # Nodes collect where they stood before the step, so the windows `at` serve once more.
     held = _held(motion, forced, groups)
-    pushed = Pushed(fluid.fastest(rho, momentum), forcing, forced.target, motion.target, held)
+    pushed = Pushed(fluid.fastest(rho, moving), forcing, forced.target, motion.target, held)
     return collect(world, end, at), measure(world, end, rest, pushed)
 
 

@@ -54,6 +54,7 @@ OPERANDS = {
     "develop": [*BODY, *LAYOUT, *CONTROLLER],
     "summarise": [
         *PLANES,
+        *["uniform force", "forces across rows", "forces along rows", "walls"],
         *["positions", "angles", "edges", "joints", "present", "collected"],
         "rest angles",
         "rest lengths",

@@ -78,7 +78,19 @@ describe("the kernel", () => {
     module = await WebAssembly.compile(await (await fetch(address)).arrayBuffer());
   });
   const kernel = () => new Kernel(module);
-  const SIZES = { steps: 1, bodies: 1, nodes: 2, edges: 1, joints: 0, height: 8, width: 8, energetic: 0 };
+  const SIZES = {
+    steps: 1,
+    bodies: 1,
+    nodes: 2,
+    edges: 1,
+    joints: 0,
+    height: 8,
+    width: 8,
+    energetic: 0,
+    driven: 0,
+    varied: 0,
+    walled: 0,
+  };
 
   it("names a number that is missing", () => {
     expect(() => kernel().call("rollout", {}, () => undefined)).toThrow("The inputs have no number steps.");
@@ -161,7 +173,8 @@ describe("the kernel", () => {
       ["scales", one.put(Float32Array.of(0.1, 1, 0))],
     ]);
     const single = ["speed", "node speed", "held", "heading", "power"];
-    const empty = ["joints", "collected", "rest angles", "curvature"];
+    const forces = ["uniform force", "forces across rows", "forces along rows", "walls"];
+    const empty = ["joints", "collected", "rest angles", "curvature", ...forces];
     const measured = (reused: Results = []) =>
       one.call(
         "summarise",

@@ -3,8 +3,10 @@
 import type { EvaluationInputs, Simulation } from "../decode/evaluation";
 import type { Area, Kernel, Results } from "./kernel";
 
+/** Operands of the forces on the water besides those of bodies, and of walls. */
+export const FORCES = ["uniform force", "forces across rows", "forces along rows", "walls"];
 /** Operands of a summary that are those of its rollout; all others are results. */
-const OF_START = ["positions", "angles", "edges", "joints", "present"];
+const OF_START = ["positions", "angles", "edges", "joints", "present", ...FORCES];
 export const PLANE = "a plane";
 const REST = ["rest angles", "rest lengths"];
 const CLOCK = "clock";

@@ -3,9 +3,10 @@
 import type { EvaluationInputs } from "../decode/evaluation";
 import { type Rest, type Swimmer, joined, REST, STATE, swimmerOf, within, writeRest } from "./swimmer";
 import { type Area, Kernel, type Results } from "./kernel";
-import { GIVEN, type Named, PLANE } from "./simulation";
+import { FORCES, GIVEN, type Named, PLANE } from "./simulation";
 import { text } from "./text";
 import {
+  type Forces,
   type Place,
   type Plane,
   forced,
@@ -58,6 +59,7 @@ export class Swim {
   private state!: Results;
   private spare!: Results;
   private scratch!: Record<Rest, Area>;
+  private forces!: Forces;
   /** Nodes that have grown. */
   private grown!: number[];
   /** Recorded steps of a stroke in each step. */
@@ -136,7 +138,7 @@ export class Swim {
   }
 
   frame(): Frame {
-    const flow = velocities(this.planes());
+    const flow = velocities(this.planes(), this.forces);
     const [curl, vorticityScale] = quantised([vorticity(flow, this.stage.size)]);
     const [velocity, velocityScale] = quantised(flow);
     return {
@@ -156,6 +158,8 @@ export class Swim {
     this.numbers = { ...numbers, commands: GIVEN };
     this.operands = new Map([...arrays].map(([name, values]) => [name, kernel.put(values)]));
     this.nothing = kernel.put(new Float32Array(0));
+    const [uniform, across, along, walls] = FORCES.map((name) => arrays.get(name)!);
+    this.forces = { uniform: uniform!, across: across!, along: along!, walls: walls! };
     const put = (name: string, values: Float32Array) => ({ ...kernel.put(values), name });
     this.state = [
       ...planes.map((plane) => put(PLANE, plane)),

@@ -89,6 +89,17 @@ describe("a push", () => {
   });
 });
 
+describe("a force on the water", () => {
+  it("has acted for half a step on its velocity, but on no wall", () => {
+    const walls = Int32Array.from({ length: SIZE[0] * SIZE[1] }, (_, cell) => (cell === 3 ? 1 : 0));
+    const across = planeOf((x) => 0.001 * x);
+    const [x, y] = velocities(still(), { uniform: [0.004, -0.002], across, along: planeOf(() => 0), walls });
+    expect(x[8 * SIZE[1] + 6]).toBeCloseTo(0.002 + 0.004, 6);
+    expect(y[8 * SIZE[1] + 6]).toBeCloseTo(-0.001, 6);
+    expect([x[3], y[3]]).toEqual([0, 0]);
+  });
+});
+
 describe("the vorticity", () => {
   it("is the slope of a shear flow", () => {
     const wave = (x: number) => 0.05 * Math.sin((2 * Math.PI * x) / SIZE[0]);

@@ -16,9 +16,21 @@ const REACH = 2;
 /** Places along each axis where another creature may begin. */
 const GRID = 16;
 
+/** Forces on the water besides those of bodies; empty where there are none. */
+export interface Forces {
+  uniform: ArrayLike<number>;
+  /** In each cell, across rows and along them. */
+  across: ArrayLike<number>;
+  along: ArrayLike<number>;
+  walls: ArrayLike<number>;
+}
+
+const NONE: Forces = { uniform: [], across: [], along: [], walls: [] };
+
 /** The velocity of each cell along x and y, in cells a step. */
-export function velocities(populations: Plane[]): [Plane, Plane] {
+export function velocities(populations: Plane[], forces: Forces = NONE): [Plane, Plane] {
   const cells = populations[0]!.length;
+  const { uniform, across, along, walls } = forces;
   const x = new Float32Array(cells);
   const y = new Float32Array(cells);
   for (let cell = 0; cell < cells; cell++) {
@@ -28,6 +40,11 @@ export function velocities(populations: Plane[]): [Plane, Plane] {
       density += value;
       x[cell]! += CX[i]! * value;
       y[cell]! += CY[i]! * value;
+    }
+    // Half a step of the force has acted, as in `fluid.moving`; walls are at rest.
+    if (!walls[cell]) {
+      x[cell]! += ((uniform[0] ?? 0) + (across[cell] ?? 0)) / 2;
+      y[cell]! += ((uniform[1] ?? 0) + (along[cell] ?? 0)) / 2;
     }
     x[cell]! /= density;
     y[cell]! /= density;
