@@ -179,11 +179,12 @@ def reprojected(session: Session, run: Run, axes: str, measures: str) -> Reproje
 
 
 def _requested(measures: str, recorded: Sequence[Measure]) -> list[str]:
-    names = list(dict.fromkeys(filter(None, measures.split(","))))
+    """Return the requested measures in the order in which they are recorded."""
+    names = list(filter(None, measures.split(",")))
     existing = [measure.name for measure in recorded]
     if wrong := [name for name in names if name not in existing]:
         raise invalid_field("measures", f"names among {', '.join(existing)}", ", ".join(wrong))
-    return names
+    return [name for name in existing if name in names]
 
 
 def _refuse_long(session: Session, run: Run, most: int) -> None:

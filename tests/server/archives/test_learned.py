@@ -67,7 +67,7 @@ def test_elites_have_coordinates_once_the_run_has_ended(
     expected = learned.coordinates(values)
     for part in ("", "/history"):
         found = listed(api, run_id, part).json()["measures"]
-        assert list(found) == ["bending_effort", "learned_1", "learned_2"]
+        assert list(found) == ["learned_1", "learned_2", "bending_effort"]
         assert found["learned_1"] == pytest.approx(expected[:, 0].tolist())
         assert found["learned_2"] == pytest.approx(expected[:, 1].tolist())
         assert found["bending_effort"] == [0.25, 2.0]

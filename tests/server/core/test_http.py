@@ -59,7 +59,7 @@ def test_many_requests_at_once_wait_for_each_other_and_all_are_answered(address,
     ],
 )
 def test_a_slow_store_or_redis_keeps_no_place_from_other_requests(
-    address, api, services, run_id, attempt, record, known, path, monkeypatch
+    address, api, services, run_id, attempt, record, known, path, monkeypatch, built
 ):
     """Each takes a thread, of which there are more than connections."""
     record(1, {5: 1.0})
