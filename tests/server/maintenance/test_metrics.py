@@ -205,7 +205,7 @@ def test_the_servers_own_work_is_measured(serve, services, update_rows, eventual
         found = lines()
     assert float(found["microcosmos_database_statement_seconds_count"]) > 10
     assert float(found['microcosmos_database_connections{state="in_use"}']) >= 0
-    assert float(found["microcosmos_database_connections_limit"]) == 15
+    assert float(found["microcosmos_database_connections_limit"]) == 20
     free, whole = (f'microcosmos_disk_{one}_bytes{{holds="store"}}' for one in ("free", "size"))
     assert 0 < float(found[free]) < float(found[whole])
 
