@@ -47,8 +47,9 @@ class Pace:
 
     def note(self, entries: Sequence[Entry]) -> None:
         """Take the next number from the length of the last ones."""
-        mean = sum(len(one.data) for one in entries) / len(entries) if entries else 0
-        self.count = max(1, min(PAGE, 4 * self.count, int(PAGE_LENGTH / (mean + 1))))
+        if entries:  # While nothing comes, it is unknown how long the next ones are.
+            mean = sum(len(one.data) for one in entries) / len(entries)
+            self.count = max(1, min(PAGE, 4 * self.count, int(PAGE_LENGTH / (mean + 1))))
 
 
 @dataclass(eq=False)

@@ -294,6 +294,7 @@ def test_few_long_events_are_read_at_once():
         counts.append(pace.count)
         pace.note([entry] * pace.count)
     assert counts == [1, 4, 16, 64, 100, 1, 1]
+    pace.note([])  # Nothing came, so nothing is known of what will.
     assert pace.count == 4
 
 
