@@ -86,7 +86,7 @@ async def read_reprojection(
 
 
 def _sorted(measures: str) -> str:
-    """Return one text for all texts that name the same measures, which have one answer."""
+    """Return the names sorted, each once: requests for the same measures have one answer."""
     return ",".join(sorted(set(filter(None, measures.split(",")))))
 
 

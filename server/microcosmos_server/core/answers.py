@@ -79,7 +79,10 @@ class AnswerCache:
 
 
 def tag_of(*parts: Any) -> str:
-    """Return a tag of everything on which an answer depends; of long parts, in a thread."""
+    """Return a tag of everything on which an answer depends.
+
+    Long parts take time: call it in a thread.
+    """
     return sha256(repr(parts).encode()).hexdigest()[:32]
 
 

@@ -43,7 +43,7 @@ class Order:
     id: Any
     id_type: Any
     length: ColumnElement[int] = field(default_factory=lambda: literal(0))
-    """The length of a row; of rows that may be long, a page has fewer."""
+    """The length of a row. A page ends early where rows are long."""
 
     # Rows without a key are read apart: NULL is first in SQLite and last in PostgreSQL, and
     # `NULLS LAST` would need a sort in place of the index (tests/server/core/test_orders.py).

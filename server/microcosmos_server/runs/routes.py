@@ -216,7 +216,7 @@ def list_runs(
 ) -> RunPage:
     """Return runs with any of these states and experiments, this tag and this text.
 
-    Of runs with long specs a page has fewer than `limit`: `next` tells whether more follow.
+    A page has fewer runs than `limit` where specs are long: `next` tells whether more follow.
     `q` searches names, tags, notes and the start of ids. `sweep` is an id, or `none`. With `-`
     the sort is descending; runs without a value come last. `deleted` selects the bin.
     """

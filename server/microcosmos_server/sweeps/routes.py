@@ -227,7 +227,7 @@ def list_sweeps(
 ) -> SweepPage:
     """Return sweeps, newest first; `deleted` selects those with all runs in the bin.
 
-    Of sweeps with long specs a page has fewer than `limit`.
+    A page has fewer sweeps than `limit` where specs are long.
     """
     kept = select(Run.id).where(Run.sweep == Sweep.id, lifecycle.NOT_IN_BIN).exists()
     listed = select(Sweep).where(~kept if deleted else kept)

@@ -89,7 +89,7 @@ class SweepBrief(Wire):
 
 class SweepRead(SweepBrief):
     cases: list[CaseRead]
-    """With the values of each, thus possibly long: lists omit them."""
+    """Each with its values, which may be long: lists omit them."""
 
 
 class SweepPage(Wire):

@@ -731,7 +731,7 @@ export interface paths {
          * List Runs
          * @description Return runs with any of these states and experiments, this tag and this text.
          *
-         *     Of runs with long specs a page has fewer than `limit`: `next` tells whether more follow.
+         *     A page has fewer runs than `limit` where specs are long: `next` tells whether more follow.
          *     `q` searches names, tags, notes and the start of ids. `sweep` is an id, or `none`. With `-`
          *     the sort is descending; runs without a value come last. `deleted` selects the bin.
          */
@@ -1574,7 +1574,7 @@ export interface paths {
          * List Sweeps
          * @description Return sweeps, newest first; `deleted` selects those with all runs in the bin.
          *
-         *     Of sweeps with long specs a page has fewer than `limit`.
+         *     A page has fewer sweeps than `limit` where specs are long.
          */
         get: operations["list_sweeps_api_v1_sweeps_get"];
         put?: never;
