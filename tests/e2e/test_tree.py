@@ -4,8 +4,7 @@ import csv
 import io
 import re
 
-from drive import wait_until
-from pages import expect_in_url, see_it_move, wait_until_still
+from pages import expect_in_url, picture, see_it_move, wait_until_changed, wait_until_still
 from playwright.sync_api import Locator, Page, expect
 
 SETTLED_MS = 400
@@ -57,13 +56,13 @@ def zoom_and_drag(page: Page) -> None:
     page.mouse.move(x, y)
     page.mouse.wheel(0, -400)
     expect(out).to_be_enabled()
-    page.wait_for_timeout(SETTLED_MS)
-    scale = "document.querySelector('.tree-picture').style.transform"
-    before = page.evaluate(scale)
+    painting = page.locator(".tree-picture")
+    wait_until_still(painting)
+    before = picture(painting)
     page.mouse.down()
     page.mouse.move(x + 30, y + 60, steps=5)
     page.mouse.up()
-    wait_until(lambda: page.evaluate(scale) != before, 10, "the tree has moved")
+    wait_until_changed(painting, before)
     assert "/tree" in page.url, "a drag opens nothing"
     page.get_by_role("button", name="Whole tree").press("Enter")
     expect(out).to_be_disabled()
