@@ -65,17 +65,33 @@ def _inverse(pairs: np.ndarray, count: int) -> np.ndarray:
     """Return the matrix (item, pair) from differences, second item minus first, to items.
 
     It is the pseudoinverse: differences are met by least squares, and each connected piece has
-    mean 0. With D the matrix of differences and J that of means, D⁺ = (DᵀD + J)⁻¹ Dᵀ.
+    mean 0.
     """
+    piece, found = pieces(pairs, count), np.zeros((count, len(pairs)))
+    known: dict[bytes, np.ndarray] = {}  # Equal bodies have the same.
+    for number in range(piece.max(initial=-1) + 1):
+        items, own = (
+            np.flatnonzero(piece == number),
+            np.flatnonzero(piece[pairs[:, 0]] == number),
+        )
+        within = np.searchsorted(items, pairs[own])
+        name = np.array([len(items), *within.ravel()]).tobytes()
+        if name not in known:
+            known[name] = _inverse_of_piece(within, len(items))
+        found[np.ix_(items, own)] = known[name]
+    return found
+
+
+def _inverse_of_piece(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return the same for a connected graph. With D the matrix of differences and J that of
+    means, D⁺ = (DᵀD + J)⁻¹ Dᵀ."""
     first, second = pairs.T
     squares = np.zeros((count, count))  # Whole numbers, so that their order does not matter.
     for one, other in ((first, first), (second, second)):
         np.add.at(squares, (one, other), 1)
     for one, other in ((first, second), (second, first)):
         np.add.at(squares, (one, other), -1)
-    piece = pieces(pairs, count)
-    together = piece[:, None] == piece[None]
-    inverse = exact.inverse(squares + together / together.sum(1))
+    inverse = exact.inverse(squares + 1 / count)
     return inverse[:, second] - inverse[:, first]
 
 
