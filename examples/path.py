@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 import microcosmos
-from microcosmos import build, search, spec
+from microcosmos import build, search, spec, world
 from microcosmos.genomes import Vector
 from microcosmos.search import folding
 
@@ -35,9 +35,12 @@ def main(steps: int = 200, updates: int = 100, rate: float = 0.03) -> list[float
     assert task.encoding is not None
     path = jnp.asarray(bend(steps), jnp.float32) + jnp.mean(task.start.positions, 0)[None]
 
+    def middle_of(state, _):
+        return jnp.mean(world.unwrapped(task.world, state), 0)
+
     def distance(genes):
         driven = search.drive(task, Vector(genes), differentiable=True)
-        _, middle = search.simulate(driven, lambda _, measures: measures.centre, segment=20)
+        _, middle = search.simulate(driven, middle_of, segment=20)
         return jnp.sqrt(jnp.mean(jnp.sum((middle - path) ** 2, 1)))
 
     both = jax.jit(jax.value_and_grad(distance))

@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 
 import microcosmos
-from microcosmos import build, search, spec
+from microcosmos import build, search, spec, world
 from microcosmos.build import build_stroke
 
 SCENE = {
@@ -26,8 +26,8 @@ def main(
     microcosmos.prepare()
     found = {}
     for viscosity in viscosities:
-        world = SCENE["world"] | {"viscosity": viscosity}
-        scene = spec.Scene.model_validate(SCENE | {"world": world, "task": {"steps": steps}})
+        place = SCENE["world"] | {"viscosity": viscosity}
+        scene = spec.Scene.model_validate(SCENE | {"world": place, "task": {"steps": steps}})
         found[viscosity] = design(scene, updates)
         before, after = found[viscosity]
         print(f"viscosity {viscosity:g}: {before:.3f} cells straight, {after:.3f} bent")
@@ -39,9 +39,12 @@ def design(scene: spec.Scene, updates: int, step: float = 0.1) -> tuple[float, f
     assert isinstance(scene.control, spec.Gait)
     task, stroke = build.build_task(scene), build_stroke(scene.control, scene.task.steps)
 
+    def middle_of(state, _):
+        return jnp.mean(world.unwrapped(task.world, state), 0)
+
     def way(values):
         driven = search.gradients.changed(task, stroke, values)
-        _, middle = search.simulate(driven, lambda _, measures: measures.centre, segment=20)
+        _, middle = search.simulate(driven, middle_of, segment=20)
         moved = middle[-1] - middle[len(middle) // 2 - 1]
         return jnp.sqrt(jnp.sum(moved * moved) + 1e-12)
 

@@ -34,7 +34,9 @@ def main(nodes: int = 16, steps: int = 60, iterations: int = 12) -> float:
     def film(stiffness):
         rods = replace(box.rods, bend=jnp.full(len(body.joints), stiffness))
         stiff = replace(box, rods=rods)
-        return world.rollout(stiff, start, straight, lambda state, _: state.positions)[1]
+        return world.rollout(
+            stiff, start, straight, lambda state, _: world.unwrapped(stiff, state)
+        )[1]
 
     seen = jax.jit(film)(TRUE)
 

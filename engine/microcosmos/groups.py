@@ -3,7 +3,7 @@
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Float, Int, Shaped
 
 
 class Groups(eqx.Module):
@@ -22,7 +22,17 @@ class Groups(eqx.Module):
             values, self.member, self.count, indices_are_sorted=self.ascending
         )
 
-    def largest(self, values: Float[Array, "node"]) -> Float[Array, "group"]:
+    def mean(
+        self, values: Float[Array, "node *rest"], weights: Float[Array, "node"]
+    ) -> Float[Array, "group *rest"]:
+        """Return the weighted mean over the nodes of each group; 0 without weight."""
+        total = self.total(weights)
+        # A body of which nothing has grown has no weight: it must not divide by 0.
+        total = jnp.where(total == 0, 1.0, total)
+        shape = (-1, *(1,) * (values.ndim - 1))
+        return self.total(weights.reshape(shape) * values) / total.reshape(shape)
+
+    def largest(self, values: Shaped[Array, "node"]) -> Shaped[Array, "group"]:
         """Return the largest value in each group."""
         if self.count == 1:
             return jnp.max(values, keepdims=True)

@@ -79,7 +79,7 @@ def check_repulsion(steps: int = 300, dtype: Any = "float32", path: Path = JAX) 
     box, start = scenes.immersed(pair, 0.3, dtype, steric=steric, limits=limits)
     rest = scenes.held(pair, steps, dtype)
     end, forces = roll(path, box, start, rest, scenes.force)
-    y = np.asarray(end.positions, float)[:, 1]
+    y = scenes.unwrapped(box, end.positions, end.boxes)[:, 1]
     gap, force = y[20:].mean() - y[:20].mean(), np.max(np.abs(np.asarray(forces, float)))
     what = f"two bodies a cell apart, after {steps} steps"
     rows = [

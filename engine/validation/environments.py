@@ -96,7 +96,7 @@ def check_carried(steps: int = 4000, path: Path = JAX) -> Result:
     pair, height = bodies.chain(2, 1.0), 16.0
     box, start = in_flow("poiseuille", pair, (SIDE / 2, height), 0.1, 0.02)
     end, _ = roll(path, box, start, scenes.held(pair, steps, "float32"))
-    moved = np.asarray(end.positions - start.positions).mean(0)
+    moved = scenes.moved(box, start, end).mean(0)
     across, y = SIDE - 1, height - 0.5
     local = 4 * 0.02 * y * (across - y) / across**2
     what = "tracer in Poiseuille flow: speed over that of the flow"

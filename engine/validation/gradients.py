@@ -45,7 +45,8 @@ def scene(setting: str, steps: int, dtype: Any):
         place = replace(box, viscosity=viscosity, limits=world.Limits(*limits))
         rest = filaments.Rest(still.angle + wave * amplitude[None], still.length)
         end, held = world.rollout(place, start, rest, lambda _, measures: measures.held)
-        value = jnp.sum((jnp.mean(end.positions - start.positions, 0) - 0.3) ** 2)
+        moved = world.unwrapped(place, end) - start.positions
+        value = jnp.sum((jnp.mean(moved, 0) - 0.3) ** 2)
         if end.collected is not None:
             value = value + 0.1 * jnp.sum(end.collected)
         return value, jnp.mean(held)

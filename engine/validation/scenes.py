@@ -97,16 +97,28 @@ def force(measures: world.Measures):
     return measures.force
 
 
-def _positions(measures: world.Measures):
-    return measures.positions
+def places(measures: world.Measures):
+    return measures.positions, measures.boxes
+
+
+def unwrapped(box: world.World, positions: Any, boxes: Any) -> np.ndarray:
+    """Return positions from the corner of the first box, in float64."""
+    cells = np.asarray(boxes, float) * box.size
+    return np.asarray(positions, float) + cells[..., np.asarray(box.groups.member), :]
+
+
+def moved(box: world.World, start: world.State, end: world.State) -> np.ndarray:
+    """Return the displacement of each node between two states, in float64."""
+    here, there = (unwrapped(box, one.positions, one.boxes) for one in (start, end))
+    return there - here
 
 
 def recorded(
     box: world.World, start: world.State, shapes: filaments.Rest, path: Path = JAX
 ) -> np.ndarray:
     """Return positions at the start and after every step, in float64."""
-    later = roll(path, box, start, shapes, _positions)[1]
-    return np.concatenate([np.asarray(start.positions)[None], later]).astype(float)
+    later = unwrapped(box, *roll(path, box, start, shapes, places)[1])
+    return np.concatenate([unwrapped(box, start.positions, start.boxes)[None], later])
 
 
 def displacement(positions: np.ndarray) -> np.ndarray:

@@ -35,7 +35,8 @@ def taken(
     box = box if sweeps is None else replace(box, layout=None)
     start = world.at_rest(box, jnp.asarray(positions, dtype))
     shape = scenes.rest(body, np.zeros((1, len(body.joints))) + turn, dtype)
-    return np.asarray(roll(path, box, start, shape)[0].positions, float)
+    end, _ = roll(path, box, start, shape)
+    return scenes.unwrapped(box, end.positions, end.boxes)
 
 
 def errors(body: bodies.Body, positions: np.ndarray) -> tuple[float, float]:

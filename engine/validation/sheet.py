@@ -61,12 +61,12 @@ def speed(sheet: Sheet, periods: int, path: Path = JAX) -> float:
     nodes = waves(sheet, np.arange(periods * SAMPLES * part + 1) / (SAMPLES * part))
     box, state = _pair(sheet, nodes[0])
     angle, length = shapes_of(nodes[1:])
-    seen = [_seen(sheet, state)]
+    seen = [_seen(sheet, box, state)]
     for sample in range(periods * SAMPLES):
         steps = slice(sample * part, (sample + 1) * part)
         rest = filaments.Rest(*(jnp.asarray(x[steps], "float32") for x in (angle, length)))
         state, _ = roll(path, box, state, rest)
-        seen.append(_seen(sheet, state))
+        seen.append(_seen(sheet, box, state))
     place, far = np.transpose(seen[-1 - SAMPLES :])
     return float(np.mean(far[1:]) - (place[-1] - place[0]) / (SAMPLES * part))
 
@@ -83,10 +83,10 @@ def _pair(sheet: Sheet, nodes: np.ndarray) -> tuple[world.World, world.State]:
     return box, world.at_rest(box, jnp.asarray(nodes, "float32"))
 
 
-def _seen(sheet: Sheet, state: world.State) -> tuple[float, float]:
+def _seen(sheet: Sheet, box: world.World, state: world.State) -> tuple[float, float]:
     """Return the body's place along x, and the fluid's velocity halfway between the sheets."""
     momentum = np.asarray(fluid.momentum(state.populations)[0], float)
-    place = np.mean(np.asarray(state.positions[:, 0], float))
+    place = np.mean(scenes.unwrapped(box, state.positions, state.boxes)[:, 0])
     return float(place), float(np.mean(momentum[:, [0, sheet.height]]))
 
 

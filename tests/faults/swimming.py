@@ -18,7 +18,7 @@ from drive import Installation
 from scipy.stats import spearmanr
 from searches import SEEDS, carry_out, summary
 
-from microcosmos import search, spec
+from microcosmos import search, spec, world
 from microcosmos.archive import creature
 from microcosmos.audit import variants
 from microcosmos.build import build_task
@@ -161,8 +161,9 @@ def displacements(task: search.Task, rests: list[Rest]) -> np.ndarray:
     """Displacement (gait, 2) in cells of a body that follows rest shapes."""
 
     def one(rest: Rest) -> jax.Array:
-        end, _ = search.simulate(search.drive(task, rest), lambda state, measures: None)
-        return jnp.mean(end.positions - task.start.positions, 0)
+        driven = search.drive(task, rest)
+        end, _ = search.simulate(driven, lambda state, measures: None)
+        return jnp.mean(world.unwrapped(driven.world, end) - driven.start.positions, 0)
 
     return np.asarray(search.block_program(one)(stacked(rests)), float)
 

@@ -26,8 +26,6 @@ single = partial(array, dtype=np.float32)
 at_rest = jax.jit(world.at_rest)
 STIFF = {"stretch": 1.0, "shear": 1.0, "bend": 1.0}
 OBSERVED = (
-    "centre",
-    "positions",
     "speed",
     "node_speed",
     "heading",
@@ -137,6 +135,22 @@ def chain(nodes=20, spacing=1.0, **stiffness):
     return bodies.chain(nodes, spacing, **{**STIFF, **stiffness})
 
 
+def net():
+    """Nodes on a grid of four rows and five columns, each joined to its neighbours."""
+    number = np.arange(20).reshape(4, 5)
+    along = np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], 1)
+    across = np.stack([number[:-1].ravel(), number[1:].ravel()], 1)
+    places = np.stack(np.divmod(np.arange(20), 5), 1) * 1.0
+    return bodies.from_edges(places, np.concatenate([along, across]), **STIFF)
+
+
+def unjointed(body):
+    """A body without two of its joints: its edges turn freely there."""
+    kept = np.arange(len(body.joints)) % 5 != 1
+    parts = {name: getattr(body, name)[kept] for name in ("joints", "rest_angle", "bend")}
+    return replace(body, **parts)
+
+
 def shoal():
     """Three filaments, each turned another way."""
     places = (((12.3, 14.2), 0.3), ((35.1, 12.9), 2.1), ((24.0, 34.4), 4.0))
@@ -150,11 +164,17 @@ def heap():
 
 
 def grown(body, nodes, **options):
-    """A chain of which only the first nodes have grown."""
+    """A chain of which only the first or some nodes have grown."""
     box, start, rest = scene(body, **options)
-    present = array(np.arange(len(body.positions)) < nodes)
+    there = range(nodes) if isinstance(nodes, int) else nodes
+    return grown_alone(box, np.isin(np.arange(len(body.positions)), there)), start, rest
+
+
+def grown_alone(box, present):
+    """A world in which only some nodes have grown."""
+    present = array(present)
     rods = jax.jit(world.grown_rods)(box.rods, present)
-    return replace(box, present=present, rods=rods), start, rest
+    return replace(box, present=present, rods=rods)
 
 
 SCENES = {
@@ -168,6 +188,10 @@ SCENES = {
     "a soft body": lambda: scene(chain(stretch=0.7, shear=0.4, bend=0.6)),
     "a star, matched": lambda: scene(bodies.star(4, 6, 1.0, **STIFF), matched=True),
     "a star": lambda: scene(bodies.star(4, 6, 1.0, **STIFF)),
+    "a net, whose loops share edges": lambda: scene(net(), matched=True),
+    "a star whose arms hang together by some joints": lambda: scene(
+        unjointed(bodies.star(4, 4, 1.0, **STIFF)), matched=True
+    ),
     "a ring": lambda: scene(bodies.ring(20, 1.0, **STIFF), matched=True),
     "three bodies, matched": lambda: scene(shoal(), matched=True),
     "three bodies": lambda: scene(shoal()),
@@ -239,6 +263,12 @@ SCENES = {
     "a body that has grown, kept out of obstacles": lambda: kept_out(grown(chain(), 13)),
     "obstacles without fluid": lambda: kept_out(scene(heap(), fluid=False)),
     "walls without fluid": lambda: surrounded(scene(chain(), fluid=False), "force", "solid"),
+    "a body beyond its box": lambda: moved(scene(chain(), matched=True), (100.3, -70.2)),
+    "bodies that leave their boxes": lambda: moved(repelling(heap()), (-17.5, 23.5)),
+    "a grown body that leaves its box": lambda: moved(grown(chain(), 13), (-14.5, 24.0)),
+    "a body whose first nodes have not grown": lambda: moved(
+        grown(chain(), range(7, 20), matched=True), (-21.5, 0.0)
+    ),
     "a body that has grown": lambda: grown(chain(), 13),
     "a stiff body that has grown": lambda: grown(chain(), 13, matched=True),
 }
@@ -248,6 +278,14 @@ def run(rollout, scene, steps=100):
     """Carry out the first steps of a scene; return the end and the measures."""
     box, start, rest = scene
     return jax.jit(rollout)(box, start, jax.tree.map(lambda x: np.asarray(x)[:steps], rest))
+
+
+def unwrapped(box, start, observed):
+    """Places from the corner of the first box: rounding decides when a body leaves a box."""
+    return {
+        "positions": world.unwrapped(box, observed),
+        "centre": world.route(box, start, observed).places[1:],
+    }
 
 
 def in_jax(box, start, rest):

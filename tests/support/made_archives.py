@@ -17,11 +17,11 @@ CELLS = np.array([1, 6, 11], np.int32)
 
 def stream(nodes, length, creature):
     draw = np.random.default_rng(nodes)
-    places, origin, scale = poses.quantised(draw.random((64, nodes, 2)) * 9)
+    places, middles, scale = poses.quantised(draw.random((64, nodes, 2)) * 9)
     edges = np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1)
     path = draw.random((65, 2)).astype(np.float32)
     return poses.PoseStream(
-        places, path, origin, scale, edges, 40, 100, 2, 100, (24, 24), length, creature
+        places, path, middles, scale, edges, 40, 100, 2, 100, (24, 24), length, creature
     )
 
 

@@ -7,12 +7,12 @@ from microcosmos.archive.poses import MOMENTS, PoseStream, decode, quantised
 
 def stream(positions, length, edges=None, strokes=2):
     """A pose stream of positions (frame, node, 2), of a chain unless there are edges."""
-    units, origin, scale = quantised(positions)
+    units, middles, scale = quantised(positions)
     nodes = np.arange(positions.shape[1])
     return PoseStream(
         positions=units,
         path=np.zeros((MOMENTS, 2), np.float32),
-        origin=origin,
+        middles=middles,
         scale=scale,
         edges=np.stack([nodes[:-1], nodes[1:]], 1) if edges is None else np.array(edges),
         start=0,

@@ -73,11 +73,11 @@ def pose_stream(creature: str, frames: int = 64) -> bytes:
     node = np.arange(3)[None]
     swing = np.sin(2 * np.pi * (stroke - node / 3))
     places = np.stack([40 + node + 10 * stroke, 30 + swing], -1)
-    positions, origin, scale = pose_streams.quantised(places)
+    positions, middles, scale = pose_streams.quantised(places)
     return pose_streams.PoseStream(
         positions=positions,
         path=places.mean(1)[::8],
-        origin=origin,
+        middles=middles,
         scale=scale,
         edges=np.array([[0, 1], [1, 2]]),
         start=40,

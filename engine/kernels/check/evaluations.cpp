@@ -26,13 +26,13 @@ using Indices = std::vector<int32_t>;
 
 struct Evaluation {
   Rollout r = {};
-  Numbers parameters, planes[9], positions, angles, energy, collected, layout, matrix, stiffness,
+  Numbers parameters, planes[9], positions, angles, energy, collected, layout, stiffness,
       control, bias, weight, timer, ramp, site, gain, lag, body_angle, body_length, uniform_force,
-      force_x, force_y, away_x, away_y, sponge, sponge_velocity, smoothing;
-  Indices ends, pairs, member, piece, present, edge_colour, joint_colour, activation, source,
+      force_x, force_y, away_x, away_y, sponge, sponge_velocity, smoothing, boxes;
+  Indices ends, pairs, member, piece, present, bends, edge_colour, joint_colour, activation, source,
       target, joint_node, walls;
   Numbers rest_angle, rest_length, clock, out[20];
-  Numbers places, frames, shown, measures;
+  Numbers places, frames, middles, shown, measures;
 
   explicit Evaluation(Random& random) {
     r.height = 24 + random.below(20), r.width = 24 + random.below(20), r.steps = 40;
@@ -68,7 +68,7 @@ struct Evaluation {
     for (const Numbers* one : {&rest_angle, &rest_length})
       found = checksum(found, one->data(), 4 * one->size());
     for (const Numbers& one : out) found = checksum(found, one.data(), 4 * one.size());
-    for (const Numbers* one : {&places, &frames, &shown, &measures})
+    for (const Numbers* one : {&places, &frames, &middles, &shown, &measures})
       found = checksum(found, one->data(), 4 * one->size());
     return found;
   }
@@ -81,8 +81,8 @@ struct Evaluation {
     for (int t = 0; t < r.steps && r.senses; t++) clock[t] = float(t + 1);
     o.clock = clock.data(), o.scales = scales;
     places.assign(2 * PLACES, 0), frames.assign(2 * FRAMES * size_t(r.nodes), 0);
-    shown.assign(SHOWN, 0), measures.assign(MEASURE_COUNT, 0);
-    o.places = places.data(), o.frames = frames.data(), o.shown = shown.data();
+    middles.assign(2 * FRAMES, 0), shown.assign(SHOWN, 0), measures.assign(MEASURE_COUNT, 0);
+    o.places = places.data(), o.frames = frames.data(), o.middles = middles.data(), o.shown = shown.data();
     o.measures = measures.data();
     ISA::Summary(o).write();
   }
@@ -91,7 +91,7 @@ struct Evaluation {
     const int arms = chain ? 1 : 3, each = chain ? 4 + random.below(14) : 3 + random.below(3);
     const float spacing = random.between(0.75f, 1.0f);
     const int ways[3][2] = {{1, 0}, {0, 1}, {-1, 0}};
-    positions = {r.height * 0.5f, r.width * 0.5f};
+    positions = {r.height * random.unit(), r.width * random.unit()};
     Indices first(arms);
     for (int arm = 0; arm < arms; arm++)
       for (int k = 1; k <= each; k++) {
@@ -108,7 +108,7 @@ struct Evaluation {
     r.joints = int(pairs.size() / 2);
     colour(ends, r.nodes, edge_colour), colour(pairs, r.edges, joint_colour);
     member.assign(r.nodes, 0), piece.assign(r.nodes, 0), present.assign(r.nodes, 1);
-    layout.assign(r.nodes, 0), matrix.assign(size_t(r.nodes) * r.nodes, 0);
+    layout.assign(r.nodes, 0), bends.assign(r.joints, 1);
     stiffness.assign(r.edges, r.matched && !r.soft ? 1.0f : random.between(0.5f, 1.0f));
     body_length.assign(r.edges, spacing);
     for (int j = 0; j < r.joints; j++)
@@ -182,8 +182,9 @@ struct Evaluation {
     r.parameters = parameters.data(), r.positions = positions.data(), r.angles = angles.data();
     r.energy = energy.data(), r.collected = collected.data(), r.ends = ends.data();
     r.pairs = pairs.data(), r.member = member.data(), r.piece = piece.data();
+    boxes = {float(random.below(9)), -float(random.below(9))}, r.boxes = boxes.data();
     r.present = present.data(), r.layout_angle = r.layout_rest_angle = layout.data();
-    r.turned = r.placed = matrix.data(), r.edge_colour = edge_colour.data();
+    r.bends = bends.data(), r.whole = layout.data(), r.edge_colour = edge_colour.data();
     r.joint_colour = joint_colour.data(), r.stretch = r.shear = r.bend = stiffness.data();
     r.control = control.data(), r.activation = activation.data(), r.bias = bias.data();
     r.source = source.data(), r.target = target.data(), r.weight = weight.data();
@@ -195,10 +196,10 @@ struct Evaluation {
     float** results[] = {&r.end_positions, &r.end_angles, &r.end_energy, &r.end_collected,
                          &r.centre,        &r.path,       &r.speed,      &r.node_speed,
                          &r.held,          &r.heading,    &r.curvature,  &r.power,
-                         &r.force};
-    const size_t sizes[] = {2 * N, size_t(r.edges), cells, N,    2 * T, 2 * T * N, T, T, T,
-                            T,     T * J,           T,     2 * T};
-    for (int i = 0; i < 13; i++) out[i].assign(sizes[i], 0), *results[i] = out[i].data();
+                         &r.force,         &r.end_boxes,  &r.box};
+    const size_t sizes[] = {2 * N, size_t(r.edges), cells, N,     2 * T, 2 * T * N, T,    T, T,
+                            T,     T * J,           T,     2 * T, 2,     2 * T};
+    for (int i = 0; i < 15; i++) out[i].assign(sizes[i], 0), *results[i] = out[i].data();
   }
 
   // Weights over the whole world, which fall with the distance.

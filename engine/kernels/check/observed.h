@@ -14,12 +14,12 @@ inline microcosmos::Observed observed(const microcosmos::Rollout& r) {
   o.driven = r.driven, o.varied = r.varied, o.walled = r.walled, o.walls = r.walls;
   o.uniform_force = r.uniform_force, o.force_x = r.force_x, o.force_y = r.force_y;
   o.positions = r.positions, o.angles = r.angles, o.ends = r.ends, o.pairs = r.pairs;
-  o.present = r.present, o.collected = r.end_collected;
+  o.member = r.member, o.present = r.present, o.boxes = r.boxes, o.collected = r.end_collected;
   const bool closed = r.commands != microcosmos::GIVEN;
   o.rest_angle = closed ? r.rest_angle : r.given_angle;
   o.rest_length = closed ? r.rest_length : r.given_length;
   o.centre = r.centre, o.path = r.path, o.speed = r.speed, o.node_speed = r.node_speed;
   o.held = r.held, o.heading = r.heading, o.power = r.power, o.curvature = r.curvature;
-  o.force = r.force;
+  o.force = r.force, o.box = r.box;
   return o;
 }

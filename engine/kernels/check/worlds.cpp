@@ -116,7 +116,7 @@ class Fuzzed {
     o.clock = r.clock, o.scales = numbers(3, 0.01f, 10);
     float* shown = room(SHOWN);
     o.places = room(2 * PLACES), o.frames = room(2 * FRAMES * size_t(r.nodes));
-    o.shown = shown, o.measures = room(MEASURE_COUNT);
+    o.middles = room(2 * FRAMES), o.shown = shown, o.measures = room(MEASURE_COUNT);
     ISA::Summary(o).write();
     return int(shown[STATUS]);
   }
@@ -197,9 +197,10 @@ class Fuzzed {
     r.present = few() ? indices(r.nodes, 0, 2) : indices(r.nodes, 1 - few(), 2);
     r.laid_out = coin(), r.matched = r.laid_out && coin(), r.actuated = r.laid_out && coin();
     r.soft = r.matched && coin();
-    const size_t N = r.nodes, E = r.edges, J = r.joints, laid = r.laid_out;
+    const size_t E = r.edges, J = r.joints, laid = r.laid_out;
     r.layout_angle = numbers(laid * E, -3, 3), r.layout_rest_angle = numbers(laid * J, -1, 1);
-    r.turned = numbers(laid * E * J, -1, 1), r.placed = numbers(laid * N * E, -1, 1);
+    r.bends = few() ? indices(laid * J, 0, 2) : indices(laid * J, 1 - few(), 2);
+    r.whole = numbers(!r.matched * J, -7, 7);
     r.stretch = numbers(E, 0, 1), r.shear = numbers(E, 0, 1), r.bend = numbers(J, 0, 1);
   }
 
@@ -261,8 +262,10 @@ class Fuzzed {
     }
     const float far = few() ? 1e6f : 60;
     r.positions = numbers(2 * N, -far, far), r.angles = numbers(r.edges, -4, 4);
+    r.boxes = numbers(2 * r.bodies, -9, 9);
     r.energy = numbers(r.energetic * cells, 0, 1), r.collected = numbers(r.energetic * N, 0, 1);
     r.end_positions = room(2 * N), r.end_angles = room(r.edges);
+    r.end_boxes = room(2 * r.bodies), r.box = room(2 * T * r.bodies);
     r.end_energy = room(r.energetic * cells), r.end_collected = room(r.energetic * N);
     r.centre = room(2 * T), r.path = room(2 * T * N), r.speed = room(T), r.node_speed = room(T);
     r.held = room(T), r.heading = room(T), r.curvature = room(T * r.joints), r.power = room(T);

@@ -50,7 +50,7 @@ class Barrier {
       my.add(part, w * load(away_y_ + i));
     });
     // Above the weights of 1e-12 that untouched nodes have by the guard of their root.
-    const float nodes = count.total(), weight = touching.total() + 1e-9f;
+    const float nodes = divisor(count.total()), weight = touching.total() + 1e-9f;
     const float x0 = sx.total() / nodes, y0 = sy.total() / nodes;
     const float x = mx.total() / weight, y = my.total() / weight;
     each(body.from, body.to, [&](int i, int part) __attribute__((always_inline)) {

@@ -100,7 +100,7 @@ void name_body(Arrays& a, Rollout& r) {
   a.in("member", &r.member, {N}), a.in("piece", &r.piece, {N}), a.in("present", &r.present, {N});
   a.in("layout angles", &r.layout_angle, {laid * E});
   a.in("layout rest angles", &r.layout_rest_angle, {laid * J});
-  a.in("turned", &r.turned, {laid * E, J}), a.in("placed", &r.placed, {laid * N, E});
+  a.in("bends", &r.bends, {laid * J});
 }
 
 // Name the arrays of a controller.
@@ -135,8 +135,10 @@ void name_rollout(Arrays& a, Rollout& r) {
   name_body(a, r);
   a.in("colours of edges", &r.edge_colour, {swept * E});
   a.in("colours of joints", &r.joint_colour, {swept * J});
+  a.in("whole turns", &r.whole, {swept * J});
   a.in("stretch", &r.stretch, {E}), a.in("shear", &r.shear, {E}), a.in("bend", &r.bend, {J});
   a.in("parameters", &r.parameters, {STEP_LENGTHS + r.iterations});
+  a.in("boxes", &r.boxes, {B, 2});
   a.in("energy", &r.energy, {when(energetic, H), W});
   a.in("collected", &r.collected, {when(energetic, N)});
   a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
@@ -154,6 +156,7 @@ void name_rollout(Arrays& a, Rollout& r) {
   name_controller(a, r);
   for (int i = 0; i < 9; i++) a.out("a plane", &r.end_populations[i], {H, W});
   a.out("positions", &r.end_positions, {N, 2}), a.out("angles", &r.end_angles, {E});
+  a.out("boxes", &r.end_boxes, {B, 2});
   a.out("energy", &r.end_energy, {when(energetic, H), W});
   a.out("collected", &r.end_collected, {when(energetic, N)});
   a.out("rest angles", &r.rest_angle, {when(closed, T), J});
@@ -162,8 +165,8 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.out("speed", &r.speed, {T}), a.out("node speed", &r.node_speed, {T});
   a.out("held", &r.held, {T}), a.out("heading", &r.heading, {T});
   a.out("curvature", &r.curvature, {T, J}), a.out("power", &r.power, {T});
-  a.out("force", &r.force, {T, B, 2}), a.out("seconds", &r.seconds, {PART_COUNT});
-  a.out("memory", &r.memory, {1});
+  a.out("force", &r.force, {T, B, 2}), a.out("box", &r.box, {T, B, 2});
+  a.out("seconds", &r.seconds, {PART_COUNT}), a.out("memory", &r.memory, {1});
   a.end();
 }
 
@@ -189,17 +192,19 @@ void name_summary(Arrays& a, Observed& o) {
   a.in("walls", &o.walls, {when(o.walled, H), W});
   a.in("positions", &o.positions, {N, 2}), a.in("angles", &o.angles, {E});
   a.in("edges", &o.ends, {E, 2}), a.in("joints", &o.pairs, {J, 2});
-  a.in("present", &o.present, {N}), a.in("collected", &o.collected, {when(o.energetic, N)});
+  a.in("member", &o.member, {N}), a.in("present", &o.present, {N});
+  a.in("boxes", &o.boxes, {o.bodies, 2});
+  a.in("collected", &o.collected, {when(o.energetic, N)});
   a.in("rest angles", &o.rest_angle, {T, J}), a.in("rest lengths", &o.rest_length, {T, E});
   a.in("centre", &o.centre, {T, 2}), a.in("path", &o.path, {T, N, 2});
   a.in("speed", &o.speed, {T}), a.in("node speed", &o.node_speed, {T});
   a.in("held", &o.held, {T}), a.in("heading", &o.heading, {T});
   a.in("curvature", &o.curvature, {T, J}), a.in("power", &o.power, {T});
-  a.in("force", &o.force, {T, o.bodies, 2}), a.in("clock", &o.clock, {T});
-  a.in("scales", &o.scales, {3});
+  a.in("force", &o.force, {T, o.bodies, 2}), a.in("box", &o.box, {T, o.bodies, 2});
+  a.in("clock", &o.clock, {T}), a.in("scales", &o.scales, {3});
   a.out("places", &o.places, {PLACES, 2});
   a.out("frames", &o.frames, {FRAMES, N, 2});
-  a.out("shown", &o.shown, {SHOWN});
+  a.out("middles", &o.middles, {FRAMES, 2}), a.out("shown", &o.shown, {SHOWN});
   a.out("measures", &o.measures, {MEASURE_COUNT});
   a.end();
 }
@@ -222,12 +227,13 @@ inline bool sound(const Rollout& r) {
        within(r.joint_node, r.joints, 0, r.nodes));
   return colours && network && within(r.ends, 2 * r.edges, 0, r.nodes) &&
          within(r.pairs, 2 * r.joints, 0, r.edges) && within(r.member, r.nodes, 0, r.bodies) &&
-         within(r.piece, r.nodes, 0, r.nodes) && within(r.present, r.nodes, 0, 2);
+         within(r.piece, r.nodes, 0, r.nodes) && within(r.present, r.nodes, 0, 2) &&
+         within(r.bends, r.laid_out ? r.joints : 0, 0, 2);
 }
 
 inline bool sound(const Observed& o) {
   return within(o.ends, 2 * o.edges, 0, o.nodes) && within(o.pairs, 2 * o.joints, 0, o.edges) &&
-         within(o.present, o.nodes, 0, 2);
+         within(o.member, o.nodes, 0, o.bodies) && within(o.present, o.nodes, 0, 2);
 }
 
 }  // namespace microcosmos

@@ -76,12 +76,13 @@ struct Forcing {
       weight.add(part, w), sx.add(part, w * load(p.x + i)), sy.add(part, w * load(p.y + i));
     });
     Frame f;
-    f.weight = weight.total(), f.x = sx.total() / f.weight, f.y = sy.total() / f.weight;
+    f.weight = divisor(weight.total());
+    f.x = sx.total() / f.weight, f.y = sy.total() / f.weight;
     each_point(b, nodes, r, [&](int i, int part) __attribute__((always_inline)) {
       const Vec ax = load(p.x + i) - f.x, ay = load(p.y + i) - f.y;
       inertia.add(part, load(beta + i) * (ax * ax + ay * ay));
     });
-    f.inertia = inertia.total();
+    f.inertia = divisor(inertia.total());
     return f;
   }
 

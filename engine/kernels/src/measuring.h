@@ -24,12 +24,15 @@ class Measuring {
       if (edges.to == 0) edges.from = piece.edges.from;
       edges.to = piece.edges.to;
     }
-    for (int n = 0; n < r.nodes; n++) nodes_here_ += r.present[n];
+    nodes_of_.assign(r.bodies, 0);
+    for (int n = 0; n < r.nodes; n++)
+      nodes_here_ += r.present[n], nodes_of_[r.member[n]] += r.present[n];
     for (int e = 0; e < r.edges; e++) {
       const bool here = r.present[r.ends[2 * e]] && r.present[r.ends[2 * e + 1]];
       edge_here[b.edge_slot[e]] = float(here);
       edges_here_ += here;
     }
+    nodes_here_ = divisor(nodes_here_), edges_here_ = divisor(edges_here_);
   }
 
   // Record the measures of a step.
@@ -39,7 +42,7 @@ class Measuring {
     measure_edges(n, me.share.edges);
     me.wait();  // Joints read lengths of all edges, and `finish` the sums of all bodies.
     trace(t, n, me);
-    if (me.first()) finish(t);
+    if (me.first()) finish(t, n);
   }
 
  private:
@@ -67,6 +70,7 @@ class Measuring {
     });
     float* force = r_.force + 2 * (size_t(t) * r_.bodies + body);
     force[0] = fx.total(), force[1] = fy.total();
+    std::memcpy(r_.box + 2 * (size_t(t) * r_.bodies + body), n.boxes + 2 * body, 8);
     const Sum* sums[SUMS] = {&cx, &cy, &speeds, &held, &heading, &power};
     for (int one = 0; one < SUMS; one++) sums_[one][body] = sums[one]->total();
   }
@@ -80,7 +84,13 @@ class Measuring {
   }
 
   // The measures of all bodies.
-  void finish(int t) const {
+  void finish(int t, const Nodes& n) const {
+    const float* first = n.boxes + 2 * n.leader;
+    for (int body = 0; body < r_.bodies && r_.bodies > 1; body++) {
+      const float x = n.boxes[2 * body] - first[0], y = n.boxes[2 * body + 1] - first[1];
+      sums_[X][body] += nodes_of_[body] * (x * float(r_.height));
+      sums_[Y][body] += nodes_of_[body] * (y * float(r_.width));
+    }
     r_.centre[2 * t] = total(X) / nodes_here_, r_.centre[2 * t + 1] = total(Y) / nodes_here_;
     r_.node_speed[t] = total(SPEED) / nodes_here_, r_.held[t] = total(HELD) / nodes_here_;
     r_.power[t] = total(POWER), r_.heading[t] = total(HEADING) / edges_here_;
@@ -121,6 +131,7 @@ class Measuring {
   List<Range> edges_;  // Slots of each body.
   Floats sums_[SUMS];  // (body)
   Floats length_;
+  List<float> nodes_of_;  // (body)
   float nodes_here_ = 0, edges_here_ = 0;
 };
 

@@ -23,12 +23,17 @@ class Repulsion {
       parts_.push_back({from, int(order_.size())});
     }
     places_.resize(order_.size());
+    // Bodies of which nothing has grown stand nowhere.
+    anchor_x_.assign(r.bodies, __builtin_nanf("")), anchor_y_.assign(r.bodies, __builtin_nanf(""));
   }
 
   void find(const Nodes& n, const Member& me) {
     const Range mine = parts_[me.number];
     for (int i = mine.from; i < mine.to; i++)
       places_[i] = density_.place(n.x[order_[i]], n.y[order_[i]]);
+    for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
+      if (n.anchor[body] >= 0)
+        anchor_x_[body] = n.x[n.anchor[body]], anchor_y_[body] = n.y[n.anchor[body]];
     me.wait();  // A row adds up nodes of all members,
     density_.deposit(places_, me);
     me.wait();  // columns pass through rows of all members,
@@ -41,7 +46,7 @@ class Repulsion {
       push_x[order_[i]] = strength * gx, push_y[order_[i]] = strength * gy;
     }
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
-      divide(b_.bodies[body], n);
+      divide(body, b_.bodies[body], n);
   }
 
  private:
@@ -53,10 +58,10 @@ class Repulsion {
   };
 
   // Divide the displacements of a body into those within it and its rigid motion.
-  void divide(Range body, const Nodes& n) {
+  void divide(int number, Range body, const Nodes& n) {
     const float limit = r_.parameters[REPULSION_LIMIT];
     const Frame f = frame(body, n);
-    const Rigid rigid = rigid_part(body, n, f);
+    Rigid rigid = rigid_part(body, n, f);
     float most_turned = 0, sum = 0;
     if (r_.bodies > 1) {
       Most largest;
@@ -72,7 +77,27 @@ class Repulsion {
     // The cap has changed the sums, so the rigid part goes a second time.
     const Rigid rest = rigid_part(body, n, f);
     remove(body, n, f, rest);
-    if (r_.bodies > 1) drift(body, n, f, rigid, most_turned, sum);
+    if (r_.bodies < 2) return;
+    part(number, rigid);
+    drift(body, n, f, rigid, most_turned, sum);
+  }
+
+  // Add a displacement that parts bodies which stand in exactly one place: there they push each
+  // other nowhere. Of n such bodies each takes another of n directions, so that the displacements of
+  // equal bodies add up to nothing.
+  void part(int body, Rigid& rigid) const {
+    constexpr float TIE = 1e-4f;  // The next steps make it grow.
+    const float x = anchor_x_[body], y = anchor_y_[body];
+    int count = 0, before = 0;
+    for (int other = 0; other < r_.bodies; other++) {
+      const int same = (anchor_x_[other] == x) & (anchor_y_[other] == y);
+      count += same, before += same & (other < body);
+    }
+    if (count < 2) return;
+    Vec s, c;
+    // Along a filament they would slide over each other: few have just this direction.
+    sine_cosine_any(all(1 + 6.2831855f * float(before) / float(count)), s, c);
+    rigid.x += TIE * c[0], rigid.y += TIE * s[0];
   }
 
   Frame frame(Range body, const Nodes& n) const {
@@ -82,12 +107,12 @@ class Repulsion {
       count.add(part, h), sx.add(part, h * load(n.x + i)), sy.add(part, h * load(n.y + i));
     });
     Frame f = {};
-    f.nodes = count.total(), f.x = sx.total() / f.nodes, f.y = sy.total() / f.nodes;
+    f.nodes = divisor(count.total()), f.x = sx.total() / f.nodes, f.y = sy.total() / f.nodes;
     each(body.from, body.to, [&](int i, int part) __attribute__((always_inline)) {
       const Vec x = load(n.x + i) - f.x, y = load(n.y + i) - f.y;
       inertia.add(part, load(n.here + i) * (x * x + y * y));
     });
-    f.inertia = inertia.total();
+    f.inertia = divisor(inertia.total());
     return f;
   }
 
@@ -148,6 +173,7 @@ class Repulsion {
   List<int32_t> order_;  // Slots of nodes that have grown, and the part of each share.
   List<Range> parts_;
   List<Place> places_;
+  List<float> anchor_x_, anchor_y_;  // Of each body.
 };
 
 }  // namespace microcosmos::ISA

@@ -69,6 +69,7 @@ struct Rollout {
   const float* populations[9];  // (height, width) each
   const float* positions;       // (node, 2)
   const float* angles;          // (edge)
+  const float* boxes;           // (body, 2) whole boxes before the one that positions count from
   const float* energy;          // (height, width)
   const float* collected;       // (node)
 
@@ -92,10 +93,10 @@ struct Rollout {
   // Layout of the unchanged body, for shape matching and actuators.
   const float* layout_angle;       // (edge)
   const float* layout_rest_angle;  // (joint)
-  const float* turned;             // (edge, joint)
-  const float* placed;             // (node, edge)
+  const int32_t* bends;            // (joint) 1, or 0 for joints that have not grown
   // For sweeps: the colour of each constraint, and stiffnesses, 0 to 1.
   const int32_t *edge_colour, *joint_colour;
+  const float* whole;  // (joint) For sweeps: whole turns around its ring, in rad.
   const float *stretch, *shear, *bend;
 
   // The controller, see `world.controller`.
@@ -122,7 +123,7 @@ struct Rollout {
 
   // The end; the planes may be those of the start.
   float* end_populations[9];
-  float *end_positions, *end_angles, *end_energy, *end_collected;
+  float *end_positions, *end_angles, *end_boxes, *end_energy, *end_collected;
   // Rest shapes, and the controller's time at the end of each step.
   float* rest_angle;   // (step, joint)
   float* rest_length;  // (step, edge)
@@ -137,6 +138,7 @@ struct Rollout {
   float* curvature;   // (step, joint)
   float* power;       // (step)
   float* force;       // (step, body, 2)
+  float* box;         // (step, body, 2)
 
   float* seconds;  // (PART_COUNT) time spent, if `timed`
   float* memory;   // Bytes of all worlds that the process simulates at the end, if `timed`

@@ -1,6 +1,7 @@
 // Rest shapes: the layout of a body's nodes by rest angles and rest lengths.
 #pragma once
 #include "functions.h"
+#include "graph.h"
 #include "nodes.h"
 
 namespace microcosmos::ISA {
@@ -10,22 +11,31 @@ class Shapes {
  public:
   Floats x, y;  // Of nodes, by slots; each piece may be moved and turned.
 
-  Shapes(const Bodies& b, const Rollout& r) : b_(b), r_(r) {
+  // `used`: whether it will be asked for a layout.
+  Shapes(const Bodies& b, const Rollout& r, bool used) : b_(b), r_(r) {
     direction_ = Floats(b.edge_slots + BLOCK), along_x_ = Floats(b.edge_slots + BLOCK);
     along_y_ = Floats(b.edge_slots + BLOCK);
     x = Floats(b.node_slots + BLOCK), y = Floats(b.node_slots + BLOCK);
-    if (!r.laid_out) return;  // There is no layout to read.
-    size_t room = 0;
-    for (const Piece& p : b.pieces)
-      if (!p.chain) {
-        starts_.push_back(room);
-        room += p.joint_of.size() * (p.edges.to - p.edges.from) +
-                p.edge_of.size() * (p.nodes.to - p.nodes.from);
-      } else
-        starts_.push_back(0);
-    factors_ = Floats(room);
-    for (size_t p = 0; p < b.pieces.size(); p++)
-      if (!b.pieces[p].chain) transpose(b.pieces[p], factors_ + starts_[p]);
+    if (!used) return;
+    turn_.resize(r.joints), turned_.resize(r.edges), way_.resize(r.edges), place_.resize(r.nodes);
+    for (const Piece& p : b.pieces) {
+      List<int32_t> joints, edges, nodes;
+      for (int j : p.joint_of)
+        if (r.bends[j]) joints.push_back(j);
+      // Edges that have not grown lead from a node to itself.
+      for (int e : p.edge_of)
+        if (r.ends[2 * e] != r.ends[2 * e + 1]) {
+          edges.push_back(e);
+          for (int side : {0, 1}) {
+            const int node = r.ends[2 * e + side];
+            if (std::binary_search(p.node_of.begin(), p.node_of.end(), node)) nodes.push_back(node);
+          }
+        }
+      std::sort(nodes.begin(), nodes.end());
+      nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+      joints_.push_back(p.chain ? Graph{} : Graph(r.pairs, joints, edges));
+      edges_.push_back(p.chain ? Graph{} : Graph(r.ends, edges, nodes));
+    }
   }
 
   // Lay out the nodes of all pieces, or of some.
@@ -46,46 +56,20 @@ class Shapes {
   }
 
  private:
-  // The rows of both factors of a piece, one for each joint and edge, by slots.
-  void transpose(const Piece& p, float* out) {
-    const int edges = p.edges.to - p.edges.from, nodes = p.nodes.to - p.nodes.from;
-    for (int j : p.joint_of) {
-      for (int e : p.edge_of)
-        out[b_.edge_slot[e] - p.edges.from] = r_.turned[size_t(e) * r_.joints + j];
-      out += edges;
-    }
-    for (int e : p.edge_of) {
-      for (int n : p.node_of)
-        out[b_.node_slot[n] - p.nodes.from] = r_.placed[size_t(n) * r_.edges + e];
-      out += nodes;
-    }
-  }
-
   // Find the directions of a piece's edges.
   void turn(size_t number, const float* rest_angle) {
     const Piece& p = b_.pieces[number];
-    if (p.chain) {
-      const int count = int(p.edge_of.size());
-      float turned = 0;  // Layout angles are within half a turn; what is added to them may not be.
-      for (int k = 0; k < count; k++) {
-        direction_[b_.edge_slot[p.edge_of[k]]] = r_.layout_angle[p.edge_of[k]] + turned;
-        if (k + 1 == count) break;
-        const int joint = p.joint_of[k];
-        turned = turned + (rest_angle[joint] - r_.layout_rest_angle[joint]);
-      }
+    for (int j : p.joint_of) turn_[j] = rest_angle[j] - r_.layout_rest_angle[j];
+    if (!p.chain) {
+      joints_[number].solve(turn_.data(), turned_.data());
+      for (int e : p.edge_of) direction_[b_.edge_slot[e]] = r_.layout_angle[e] + turned_[e];
       return;
     }
-    // By least squares where branches and loops contradict each other.
-    const float* factors = factors_ + starts_[number];
-    for (int e : p.edge_of) direction_[b_.edge_slot[e]] = r_.layout_angle[e];
-    const int edges = p.edges.to - p.edges.from;
-    for (int j : p.joint_of) {
-      const float turn = rest_angle[j] - r_.layout_rest_angle[j];
-      for (int i = 0; i < edges; i += LANES) {
-        float* d = direction_ + p.edges.from + i;
-        store(d, load(d) + turn * load(factors + i));
-      }
-      factors += edges;
+    const int count = int(p.edge_of.size());
+    float turned = 0;  // Layout angles are within half a turn; what is added to them may not be.
+    for (int k = 0; k < count; k++) {
+      direction_[b_.edge_slot[p.edge_of[k]]] = r_.layout_angle[p.edge_of[k]] + turned;
+      if (k + 1 < count) turned = turned + turn_[p.joint_of[k]];
     }
   }
 
@@ -94,20 +78,12 @@ class Shapes {
     const Piece& p = b_.pieces[number];
     measure(p, rest_length);
     if (p.chain) return follow(p);
-    const float* factors =
-        factors_ + starts_[number] + p.joint_of.size() * (p.edges.to - p.edges.from);
-    const int nodes = p.nodes.to - p.nodes.from;
-    each(p.nodes.from, p.nodes.to, [&](int i, int) __attribute__((always_inline)) {
-      store(x + i, Vec{}), store(y + i, Vec{});
-    });
-    for (int e : p.edge_of) {
-      const float vx = along_x_[b_.edge_slot[e]], vy = along_y_[b_.edge_slot[e]];
-      for (int i = 0; i < nodes; i += LANES) {
-        float *to_x = x + p.nodes.from + i, *to_y = y + p.nodes.from + i;
-        const Vec factor = load(factors + i);
-        store(to_x, load(to_x) + vx * factor), store(to_y, load(to_y) + vy * factor);
-      }
-      factors += nodes;
+    const float* along[2] = {along_x_, along_y_};
+    Floats* to[2] = {&x, &y};
+    for (int axis : {0, 1}) {
+      for (int e : p.edge_of) way_[e] = along[axis][b_.edge_slot[e]];
+      edges_[number].solve(way_.data(), place_.data());
+      for (int n : p.node_of) (*to[axis])[b_.node_slot[n]] = place_[n];
     }
   }
 
@@ -137,8 +113,9 @@ class Shapes {
 
   const Bodies& b_;
   const Rollout& r_;
-  Floats direction_, along_x_, along_y_, factors_;
-  List<size_t> starts_;
+  Floats direction_, along_x_, along_y_;
+  List<Graph> joints_, edges_;               // Of each piece: of its edges, and of its nodes.
+  List<float> turn_, turned_, way_, place_;  // (joint), (edge), (edge), (node)
 };
 
 // Move and turn a piece of a shape so that its nodes that are `here` come nearest to (x, y), and
@@ -152,7 +129,7 @@ INLINE void fit(const Piece& p, const Shapes& shape, const float* here, const fl
     count.add(part, h), sx.add(part, h * load(x + i)), sy.add(part, h * load(y + i));
     gx.add(part, h * load(shape.x + i)), gy.add(part, h * load(shape.y + i));
   });
-  const float nodes = count.total();
+  const float nodes = divisor(count.total());
   const float cx = sx.total() / nodes, cy = sy.total() / nodes;
   const float mx = gx.total() / nodes, my = gy.total() / nodes;
   Sum cosines, sines;

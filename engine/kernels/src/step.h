@@ -8,6 +8,7 @@
 #include "energy.h"
 #include "measuring.h"
 #include "repulsion.h"
+#include "rings.h"
 #include "surroundings.h"
 #include "sweeps.h"
 
@@ -49,7 +50,8 @@ class World {
         at_nodes_(b_, r, shares_, 1),
         n_(b_, r),
         forcing_(p_, r.bodies),
-        shapes_(b_, r),
+        shapes_(b_, r, r.matched),
+        rings_(b_, r),
         sweeps_(b_, r),
         controller_(r),
         actuators_(b_, r, n_),
@@ -105,6 +107,7 @@ class World {
         cover(p_, l_, me);
       if (r_.energetic) energy_.collect(p_, l_, me);
       carry(me.share);
+      put_within_box(b_, n_, r_, me.share.bodies);
       if (r_.observed) measuring_.record(t, n_, forcing_, motion_, me);
       me.wait();  // A member records nodes of other shares, which the next step moves.
       stop(MEASURES, me);
@@ -145,6 +148,7 @@ class World {
       for (int x = band.from; x < band.to; x++)
         std::memcpy(l_.populations + i * l_.plane + x * l_.row,
                     r_.populations[i] + size_t(x) * r_.width, 4 * size_t(r_.width));
+    if (me.first()) std::memcpy(n_.boxes, r_.boxes, 8 * size_t(r_.bodies));
     const Range nodes = me.part(r_.nodes), edges = me.part(r_.edges);
     for (int n = nodes.from; n < nodes.to; n++) {
       n_.x[b_.node_slot[n]] = r_.positions[2 * n], n_.y[b_.node_slot[n]] = r_.positions[2 * n + 1];
@@ -201,6 +205,7 @@ class World {
     }
     for (int e = edges.from; e < edges.to; e++) r_.end_angles[e] = n_.angle[b_.edge_slot[e]];
     if (me.first()) {
+      std::memcpy(r_.end_boxes, n_.boxes, 8 * size_t(r_.bodies));
       energy_.end(l_);
       if (r_.timed) *r_.memory = float(held);
     }
@@ -272,7 +277,7 @@ class World {
       follow_geometry(b_, n_, 1, share.edges);
     } else {
       follow_geometry(b_, n_, r_.parameters[THETA_FEEDBACK], share.edges);
-      sweeps_.apply(n_, rest_angle, rest_length, share);
+      sweeps_.apply(n_, rings_.closed(rest_angle, share.pieces), rest_length, share);
     }
     each(share.nodes, [&](int i, int) __attribute__((always_inline)) {
       Vec x = load(n_.new_x + i) - load(n_.x + i), y = load(n_.new_y + i) - load(n_.y + i);
@@ -337,6 +342,7 @@ class World {
   Nodes n_;
   Forcing forcing_;
   Shapes shapes_;
+  Rings rings_;
   Sweeps sweeps_;
   Controller controller_;
   Actuators actuators_;

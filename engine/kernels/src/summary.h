@@ -14,7 +14,7 @@ namespace microcosmos {
 constexpr int FRAMES = 64, STROKES = 2, PLACES = 65, LEVELS = 32767;  // `archive.poses`
 
 // Places of the other numbers of a summary.
-enum Shown { ORIGIN_X, ORIGIN_Y, SCALE, WINDOW_START, WINDOW_STOP, WINDOW_STROKES, STATUS, SHOWN };
+enum Shown { SCALE, WINDOW_START, WINDOW_STOP, WINDOW_STROKES, STATUS, SHOWN };
 enum Status { OK, NON_FINITE, SUPERSONIC };
 
 // The observations of a rollout, and its summary.
@@ -27,18 +27,20 @@ struct Observed {
   const float* positions;                                    // (node, 2) at the start
   const float* angles;                                       // (edge) at the start
   const int32_t *ends, *pairs;                               // (edge, 2) nodes, (joint, 2) edges
-  const int32_t* present;                                    // (node)
+  const int32_t *member, *present;                           // (node) body; 1 or 0
+  const float* boxes;                                        // (body, 2) at the start
   const float* collected;                                    // (node) at the end
   const float *rest_angle, *rest_length;                     // (step, joint), (step, edge)
   const float *centre, *path;                                // (step, 2), (step, node, 2)
   const float *speed, *node_speed, *held, *heading, *power;  // (step) each
   const float* curvature;                                    // (step, joint)
-  const float* force;                                        // (step, body, 2)
+  const float *force, *box;                                  // (step, body, 2) each
   const float* clock;   // (step) the controller's time at the end of each step
   const float* scales;  // viscosity, length of the body, steps in a stroke or 0
 
   float* places;    // (PLACES, 2) of the centre
   float* frames;    // (FRAMES, node, 2) whole numbers from -LEVELS to LEVELS
+  float* middles;   // (FRAMES, 2) of the body's extent
   float* shown;     // (SHOWN)
   float* measures;  // (MEASURE_COUNT)
 };
@@ -53,11 +55,16 @@ class Summary {
       edge_here_.push_back(node_here_[m.ends[2 * e]] * node_here_[m.ends[2 * e + 1]]);
     for (int j = 0; j < m.joints; j++)
       joint_here_.push_back(edge_here_[m.pairs[2 * j]] * edge_here_[m.pairs[2 * j + 1]]);
+    for (int n = m.nodes; n-- > 0;)
+      if (m.present[n]) leader_ = std::min(m.member[n], leader_ < 0 ? m.bodies : leader_);
+    leader_ = std::max(leader_, 0);
     for (int n = 0; n < m.nodes; n++) {
       nodes_ += node_here_[n];
-      for (int axis : {0, 1}) begun_[axis] += node_here_[n] * m.positions[2 * n + axis];
+      for (int axis : {0, 1})
+        begun_[axis] +=
+            node_here_[n] * (m.positions[2 * n + axis] + away(m.boxes, m.member[n], axis));
     }
-    for (double& place : begun_) place /= nodes_;
+    for (double& place : begun_) place /= larger(nodes_, 1);
     stroke();
     cosines();
   }
@@ -70,7 +77,7 @@ class Summary {
     for (int64_t k = 0; k < PLACES; k++) {
       const int64_t step = (2 * k * m_.steps + PLACES - 1) / (2 * (PLACES - 1));
       for (int axis : {0, 1})
-        m_.places[2 * k + axis] = step ? m_.centre[2 * (step - 1) + axis] : float(begun_[axis]);
+        m_.places[2 * k + axis] = float(step ? after(int(step) - 1, axis) : begun_[axis]);
     }
     for (int i = 0; i < MEASURE_COUNT; i++) m_.measures[i] = float(found_[i]);
     m_.shown[STATUS] = float(status());
@@ -90,11 +97,31 @@ class Summary {
   }
   static bool finite(double x) { return x - x == 0; }
 
+  // Return the distance in cells along an axis from the leader's box to that of a body.
+  double away(const float* boxes, int body, int axis) const {
+    return (double(boxes[2 * body + axis]) - boxes[2 * leader_ + axis]) * side(axis);
+  }
+  double side(int axis) const { return axis ? m_.width : m_.height; }
+  const float* box(int t) const { return m_.box + 2 * size_t(t) * m_.bodies; }
+
+  // Return the distance in cells between the leader's boxes at the start and after step t.
+  double carried(int t, int axis) const {
+    return (double(box(t)[2 * leader_ + axis]) - m_.boxes[2 * leader_ + axis]) * side(axis);
+  }
+
+  // Return the place of the centre after step t, from the leader's box at the start.
+  double after(int t, int axis) const { return m_.centre[2 * t + axis] + carried(t, axis); }
+
   // Return the place of the centre after `step` steps, interpolated between whole ones.
   double centre(double step, int axis) const {
     const int before = step < m_.steps ? int(step) : m_.steps - 1;
-    const double low = before ? m_.centre[2 * (before - 1) + axis] : begun_[axis];
-    return low + (step - before) * (m_.centre[2 * before + axis] - low);
+    const double low = before ? after(before - 1, axis) : begun_[axis];
+    return low + (step - before) * (after(before, axis) - low);
+  }
+
+  // Return the place of a node after step t, from the leader's box: near, so that a float holds it.
+  double place(int t, int n, int axis) const {
+    return m_.path[2 * (size_t(t) * m_.nodes + n) + axis] + away(box(t), m_.member[n], axis);
   }
 
   // Return the strokes done after a number of steps.
@@ -147,7 +174,7 @@ class Summary {
   void translation() {
     double path = 0, x = begun_[0], y = begun_[1];
     for (int t = 0; t < m_.steps; t++) {
-      const double next_x = m_.centre[2 * t], next_y = m_.centre[2 * t + 1];
+      const double next_x = after(t, 0), next_y = after(t, 1);
       path += norm(next_x - x, next_y - y), x = next_x, y = next_y;
     }
     found_[DISPLACEMENT] = norm(x - begun_[0], y - begun_[1]);
@@ -344,13 +371,13 @@ class Summary {
     const double distance = norm(moved[0], moved[1]);
     Doubles low(N, 1e30), high(N, -1e30);
     for (int f = 0; f < FRAMES; f++) {
-      const float* now = m_.path + 2 * size_t(frame(f)) * N;
+      const int t = frame(f);
       double mean[2] = {0, 0};
       for (int n = 0; n < N; n++)
-        for (int axis : {0, 1}) mean[axis] += node_here_[n] > 0 ? now[2 * n + axis] : 0;
+        for (int axis : {0, 1}) mean[axis] += node_here_[n] > 0 ? place(t, n, axis) : 0;
       for (int n = 0; n < N; n++) {
         if (!(node_here_[n] > 0)) continue;
-        const double x = now[2 * n] - mean[0] / nodes_, y = now[2 * n + 1] - mean[1] / nodes_;
+        const double x = place(t, n, 0) - mean[0] / nodes_, y = place(t, n, 1) - mean[1] / nodes_;
         xx += x * x, yy += y * y, xy += x * y;
         const double across = (moved[0] * y - moved[1] * x) / distance;
         low[n] = across < low[n] ? across : low[n], high[n] = larger(high[n], across);
@@ -367,31 +394,36 @@ class Summary {
     found_[STROUHAL] = window_ * swung / larger(distance, 1e-3 * length_);
   }
 
-  // Store positions about the middle of their range, in units that fit 16 bits.
+  // Store positions about the middle of their range in each frame, in units that fit 16 bits.
   void poses() {
     constexpr float ENDLESS = __builtin_inff();
     const int N = m_.nodes;
-    float low[2] = {ENDLESS, ENDLESS}, high[2] = {-ENDLESS, -ENDLESS};
+    float range = 0;
     for (int f = 0; f < FRAMES; f++)
-      for (int n = 0; n < N; n++)
-        for (int axis = 0; axis < 2 && m_.present[n]; axis++) {
-          const float place = m_.path[2 * (size_t(frame(f)) * N + n) + axis];
-          low[axis] = place < low[axis] ? place : low[axis];
-          high[axis] = place > high[axis] ? place : high[axis];
+      for (int axis : {0, 1}) {
+        float low = ENDLESS, high = -ENDLESS;
+        for (int n = 0; n < N; n++) {
+          if (!m_.present[n]) continue;
+          const float at = float(place(frame(f), n, axis));
+          low = at < low ? at : low, high = at > high ? at : high;
         }
-    const float origin[2] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
-    float range = high[0] - low[0] > high[1] - low[1] ? high[0] - low[0] : high[1] - low[1];
+        if (nodes_ == 0) low = high = 0;
+        middle_[2 * f + axis] = (low + high) / 2;
+        range = high - low > range ? high - low : range;
+        m_.middles[2 * f + axis] = float(middle_[2 * f + axis] + carried(frame(f), axis));
+      }
     range = range / 2 > 1e-6f ? range / 2 : 1e-6f;
     const float scale = range / float(LEVELS);
     for (int f = 0; f < FRAMES; f++)
       for (int i = 0; i < 2 * N; i++) {
-        float units = (m_.path[2 * size_t(frame(f)) * N + i] - origin[i & 1]) / scale;
+        const float at = float(place(frame(f), i / 2, i & 1));
+        float units = (at - middle_[2 * f + (i & 1)]) / scale;
         units = units > LEVELS ? LEVELS : units > -LEVELS ? units : -LEVELS;
         m_.frames[2 * size_t(f) * N + i] =
             // Adding 1.5 * 2^23 rounds to the nearest whole number.
             m_.present[i / 2] ? (units + 12582912.0f) - 12582912.0f : 0.0f;
       }
-    m_.shown[ORIGIN_X] = origin[0], m_.shown[ORIGIN_Y] = origin[1], m_.shown[SCALE] = scale;
+    m_.shown[SCALE] = scale;
     m_.shown[WINDOW_START] = float(start_), m_.shown[WINDOW_STOP] = float(stop_);
     m_.shown[WINDOW_STROKES] = float(window_);
   }
@@ -426,6 +458,8 @@ class Summary {
   const Observed& m_;
   double viscosity_, length_, period_ = 0, nodes_ = 0, joints_ = 0, done_ = 0;
   double begun_[2] = {0, 0}, cosine_[FRAMES], found_[MEASURE_COUNT] = {};
+  float middle_[2 * FRAMES];  // Of each frame, from the leader's box.
+  int leader_ = -1;           // The first body of which a node has grown.
   int start_ = 0, stop_ = 0, window_ = 0;
   Doubles node_here_, edge_here_, joint_here_;
 };

@@ -99,6 +99,8 @@ INLINE Vec8 root(Vec8 a) {
 INLINE Vec root(Vec a) { return (Vec)_mm512_sqrt_ps((__m512)a); }
 #endif
 INLINE float root(float a) { return __builtin_sqrtf(a); }
+// What sums over a body are divided by: 1 for one of which nothing has grown.
+INLINE float divisor(float a) { return a == 0 ? 1 : a; }
 
 template <class V>
 INLINE V least(V a, V b) {

@@ -36,10 +36,12 @@ class PoseStream:
     """
 
     positions: np.ndarray
-    """Offsets of nodes from `origin` in units of `scale`: int16 (frame, node, 2)."""
+    """Offsets of nodes from `middles` in units of `scale`: int16 (frame, node, 2). However far
+    a creature goes, a unit is as small as its body lets it be."""
     path: np.ndarray
     """Mean position of nodes at equal times of the whole simulation: float32 (moment, 2)."""
-    origin: tuple[float, float]
+    middles: np.ndarray
+    """The middle of the body's extent in each frame: float32 (frame, 2)."""
     scale: float
     """Cells of one unit."""
     edges: np.ndarray
@@ -61,7 +63,8 @@ class PoseStream:
     @property
     def cells(self) -> np.ndarray:
         """Positions in cells: float32 (frame, node, 2)."""
-        return np.array(self.origin, np.float32) + np.float32(self.scale) * self.positions
+        offsets = np.float32(self.scale) * self.positions
+        return np.asarray(self.middles, np.float32)[:, None] + offsets
 
     @property
     def times(self) -> np.ndarray:
@@ -71,7 +74,8 @@ class PoseStream:
         return self.start + (2 * passed + frames) // (2 * frames)
 
     def encode(self) -> bytes:
-        """Return the file: the length of a JSON header, the header, path and positions."""
+        """Return the file: the length of a JSON header, the header, path, middles and
+        positions."""
         header = {
             "format": FORMAT,
             "creature": self.creature,
@@ -79,13 +83,13 @@ class PoseStream:
             "nodes": self.positions.shape[1],
             "moments": len(self.path),
             "edges": np.asarray(self.edges).tolist(),
-            "origin": [float(x) for x in self.origin],
             "size": [int(x) for x in self.size],
             **{name: getattr(self, name) for name in _NUMBERS},
         }
         text = json.dumps(header).encode()
         text += b" " * (-len(text) % 4)  # Aligned, so that a browser can view numbers in place.
-        arrays = np.asarray(self.path, "<f4"), np.asarray(self.positions, "<i2")
+        arrays = [np.asarray(one, "<f4") for one in (self.path, self.middles)]
+        arrays.append(np.asarray(self.positions, "<i2"))
         return b"".join((_LENGTH.pack(len(text)), text, *(x.tobytes() for x in arrays)))
 
     def csv(self) -> str:
@@ -123,15 +127,15 @@ def decode(data: bytes) -> PoseStream:
 
 def _stream(header: Mapping[str, Any], data: bytes, start: int) -> PoseStream:
     frames, nodes, moments = (int(header[name]) for name in ("frames", "nodes", "moments"))
-    needed = start + 8 * moments + 4 * frames * nodes
+    needed = start + 8 * (moments + frames) + 4 * frames * nodes
     if len(data) != needed:
         raise ValueError(f"the pose stream needs {needed:,} bytes, got {len(data):,}")
-    path = np.frombuffer(data, "<f4", 2 * moments, start).reshape(moments, 2)
-    found = np.frombuffer(data, "<i2", offset=start + 8 * moments)
+    places = np.frombuffer(data, "<f4", 2 * (moments + frames), start).reshape(-1, 2)
+    found = np.frombuffer(data, "<i2", offset=start + 8 * (moments + frames))
     return PoseStream(
         positions=found.reshape(frames, nodes, 2),
-        path=path,
-        origin=(header["origin"][0], header["origin"][1]),
+        path=places[:moments],
+        middles=places[moments:],
         edges=np.array(header["edges"], np.int32).reshape(-1, 2),
         size=(header["size"][0], header["size"][1]),
         creature=header["creature"],
@@ -164,16 +168,16 @@ def unbatched(data: bytes) -> list[bytes]:
     return found
 
 
-def quantised(positions: np.ndarray) -> tuple[np.ndarray, tuple[float, float], float]:
-    """Return positions (frame, node, 2) as `PoseStream.positions`, its origin and its scale."""
-    low, high = positions.min((0, 1)), positions.max((0, 1))
-    origin = ((low + high) / 2).astype(np.float32)
-    scale = float(max(np.max(high - low) / 2, 1e-6)) / LEVELS
-    units = np.clip(np.rint((positions - origin) / scale), -LEVELS, LEVELS)
-    return units.astype(np.int16), (float(origin[0]), float(origin[1])), scale
+def quantised(positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return positions (frame, node, 2) as `PoseStream.positions`, its middles and scale."""
+    low, high = positions.min(1), positions.max(1)
+    middles = ((low + high) / 2).astype(np.float32)
+    scale = float(max(np.max(high - low, initial=0) / 2, 1e-6)) / LEVELS
+    units = np.clip(np.rint((positions - middles[:, None]) / scale), -LEVELS, LEVELS)
+    return units.astype(np.int16), middles, scale
 
 
-_ROWS = {"origin": "f4", "scale": "f4", "length": "f4", **dict.fromkeys(_COUNTS, "i4")}
+_ROWS = {"scale": "f4", "length": "f4", **dict.fromkeys(_COUNTS, "i4")}
 """Types of the values that are columns as they are."""
 
 
@@ -188,7 +192,7 @@ def columns(streams: Sequence[PoseStream]) -> dict[str, np.ndarray]:
     }
     nodes = _filled([one.positions.swapaxes(0, 1) for one in streams], (FRAMES, 2), "i2")
     return found | {
-        "origin": found["origin"].reshape(-1, 2),
+        "middles": np.array([one.middles for one in streams], "f4").reshape(-1, FRAMES, 2),
         "nodes": np.array([one.positions.shape[1] for one in streams], "i4"),
         "positions": nodes.swapaxes(1, 2),
         "connected": np.array([len(one.edges) for one in streams], "i4"),
@@ -221,7 +225,7 @@ def streams(tree: Mapping[str, Any], attributes: Mapping[str, str]) -> list[Pose
         PoseStream(
             positions=kept["positions"][i, :, : kept["nodes"][i]],
             path=kept["path"][i],
-            origin=(float(kept["origin"][i, 0]), float(kept["origin"][i, 1])),
+            middles=kept["middles"][i],
             edges=kept["edges"][i, : kept["connected"][i]],
             steps=spec["task"]["steps"],
             size=(world["width"], world["height"]),

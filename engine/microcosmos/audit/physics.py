@@ -134,7 +134,7 @@ def _simulate(task: search.Task, driven: Drive) -> tuple[Simulation, Rest]:
         values["crossing"] = search.crossing(
             search.poses_of(task, begun, seen), start.positions
         )
-        displacement = seen.centre[-1] - world.centre(driven.world, start)
+        displacement = world.route(driven.world, start, seen).way(0, -1)
         return displacement, path, values, seen.rest
 
     program = jax.jit(run, compiler_options=compiler_options())

@@ -6,4 +6,4 @@ from .builders import arc, chain, from_graph, graph, polyline, ring, star, svg, 
 from .graph import MIN_GAP, Body, Colour, colour, combined, placed
 from .layout import Layout, is_exact, layout, pieces
 from .resolution import Refined, subdivided, thinned
-from .shape import extent, from_edges, reach
+from .shape import extent, from_edges, reach, rings

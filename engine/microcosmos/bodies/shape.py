@@ -112,6 +112,38 @@ def _cyclic(node: int, met: list[int], positions: np.ndarray, edges: np.ndarray)
     return np.stack([turning, np.roll(turning, -1)], 1).tolist()
 
 
+def rings(edges: np.ndarray, joints: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return the joints that stand in a ring around a branch, as `filaments.Rings`.
+
+    A ring has at least three joints at one node, and passes each of its edges once.
+    """
+    met: dict[int, list[int]] = {}
+    for joint, (one, other) in enumerate(joints.tolist()):
+        for node in sorted(set(edges[one].tolist()) & set(edges[other].tolist()))[:1]:
+            met.setdefault(node, []).append(joint)
+    found = [ring for _, at in sorted(met.items()) if (ring := _around(joints, at))]
+    of, sign = np.full(len(joints), len(found)), np.zeros(len(joints))
+    for number, ring in enumerate(found):
+        for joint, way in ring:
+            of[joint], sign[joint] = number, way
+    return of, sign, len(found)
+
+
+def _around(joints: np.ndarray, met: list[int]) -> list[tuple[int, int]]:
+    """Return joints in the order of their ring, each with the way in which it is passed."""
+    first, edge = joints[met[0]].tolist()
+    ring, left = [(met[0], 1)], met[1:]
+    while edge != first:
+        at = [joint for joint in left if edge in joints[joint]]
+        if len(at) != 1:
+            return []  # The ring does not close, or has a fork.
+        one, other = joints[at[0]].tolist()
+        ring.append((at[0], 1 if one == edge else -1))
+        left.remove(at[0])
+        edge = other if one == edge else one
+    return ring if not left and len(ring) >= 3 else []
+
+
 def distances(nodes: int, edges: np.ndarray, length: np.ndarray, start: int = 0) -> np.ndarray:
     """Return the cells along edges from `start` to every node; infinite without a path."""
     found = _walked(_neighbours(nodes, edges, length), start)

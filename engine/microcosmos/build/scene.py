@@ -310,7 +310,18 @@ def build_rods(body: bodies.Body, dtype: Any = jnp.float32) -> filaments.Rods:
         shear=array(body.shear, dtype),
         bend=array(body.bend, dtype),
         joints=array(body.joints, jnp.int32),
+        rings=_rings(body, dtype),
     )
+
+
+def _rings(body: bodies.Body, dtype: Any) -> filaments.Rings | None:
+    of, sign, count = bodies.rings(body.edges, body.joints)
+    if count == 0:
+        return None
+    sums = np.bincount(of, sign * body.rest_angle, count + 1)[:count]
+    whole = 2 * np.pi * np.round(sums / (2 * np.pi))
+    parts = array(of, jnp.int32), array(sign, dtype), array(whole, dtype)
+    return filaments.Rings(*parts, count)
 
 
 def build_stroke(gait: spec.Gait, steps: int, dtype: Any = jnp.float32) -> filaments.Rest:

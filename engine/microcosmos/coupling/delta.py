@@ -77,7 +77,7 @@ class Windows(eqx.Module):
 def windows(positions: Vectors, size: tuple[int, ...], kernel: Kernel = PESKIN) -> Windows:
     """Return the cells of a periodic box of `size` cells on which points act, with weights.
 
-    `positions` are unwrapped, in cells.
+    `positions` are in cells, and may be beyond the box.
     """
     points = len(positions)
     if points <= CHUNK:

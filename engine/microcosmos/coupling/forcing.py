@@ -40,21 +40,19 @@ def unprojected(error: Vectors, beta: Scalars, positions: Vectors, groups: Group
 
 def force_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
     """Return the rigid translations whose removal makes Σ β e = 0 for each body."""
-    return groups.per_node(_mean(error, beta, groups))
+    return groups.per_node(groups.mean(error, beta))
 
 
 def torque_free(error: Vectors, beta: Scalars, positions: Vectors, groups: Groups) -> Vectors:
     """Return the rigid motions whose removal makes Σ β e = 0 and Σ a × β e = 0 for a body."""
     translation = force_free(error, beta, positions, groups)
     error = error - translation
-    arm = positions - groups.per_node(_mean(positions, beta, groups))
+    arm = positions - groups.per_node(groups.mean(positions, beta))
     turning = groups.total(beta * (arm[:, 0] * error[:, 1] - arm[:, 1] * error[:, 0]))
-    spin = groups.per_node(turning / groups.total(beta * jnp.sum(arm * arm, 1)))
+    inertia = groups.total(beta * jnp.sum(arm * arm, 1))
+    # A body of one node, or of none, does not turn.
+    spin = groups.per_node(turning / jnp.where(inertia == 0, 1.0, inertia))
     return translation + spin[:, None] * jnp.stack([-arm[:, 1], arm[:, 0]], 1)
-
-
-def _mean(values: Vectors, beta: Scalars, groups: Groups) -> Float[Array, "group 2"]:
-    return groups.total(beta[:, None] * values) / groups.total(beta)[:, None]
 
 
 def multi_direct_forcing(

@@ -5,7 +5,9 @@ from .matching import Layout, fitted, matched, rest_positions, softened, turns
 from .projection import (
     Pairing,
     Rest,
+    Rings,
     Rods,
+    closed,
     edge_angles,
     follow_geometry,
     normals,

@@ -24,6 +24,8 @@ class Layout(eqx.Module):
     placed: Float[Array, "node edge"]
     pieces: Groups
     """The connected piece of each node."""
+    bends: Bool[Array, "joint"] | None = None
+    """Joints that have grown; None: all."""
     bend: Float[Array, "joint"] | None = None
     """Share of a joint's error that a step removes; None: all of it."""
 
@@ -75,19 +77,18 @@ def fitted(
 
     Nodes that are not `present` have no weight; they move with the others.
     """
-    ones = jnp.ones_like(shape[:, :1])
-    weight = ones if present is None else ones * present[:, None]
+    ones = jnp.ones_like(shape[:, 0])
     # Absent nodes stay in the sums with weight 0: shapes of arrays must not depend on growth.
-    count = pieces.total(weight)
+    weight = ones if present is None else ones * present
 
     def middle(x):
-        return pieces.per_node(pieces.total(weight * x) / count)
+        return pieces.per_node(pieces.mean(x, weight))
 
     centre = middle(positions)
     arms, goal = positions - centre, shape - middle(shape)
     x, y = goal.T
-    cosine = pieces.total(weight[:, 0] * (x * arms[:, 0] + y * arms[:, 1]))
-    sine = pieces.total(weight[:, 0] * (x * arms[:, 1] - y * arms[:, 0]))
+    cosine = pieces.total(weight * (x * arms[:, 0] + y * arms[:, 1]))
+    sine = pieces.total(weight * (x * arms[:, 1] - y * arms[:, 0]))
     # A piece of one node has no direction: the constant keeps the division finite.
     size = jnp.sqrt(cosine**2 + sine**2 + 1e-24)
     c, s = pieces.per_node(cosine / size), pieces.per_node(sine / size)

@@ -42,6 +42,20 @@ class Rods(eqx.Module):
     bend: Float[Array, "joint"]
     joints: Int[Array, "joint 2"] | None = None
     """Pairs of edges; only measures need them."""
+    rings: "Rings | None" = None
+    """The joints around branches; None: there are no branches."""
+
+
+class Rings(eqx.Module):
+    """Joints in rings: around a branch of d edges stand d joints, whose angles have one sum."""
+
+    of: Int[Array, "joint"]
+    """The ring of each joint; `count`: it stands in none."""
+    sign: Float[Array, "joint"]
+    """1 or −1: the way in which a joint is passed on the way around its ring; 0 in none."""
+    whole: Float[Array, "ring"]
+    """Whole turns around each ring, in rad."""
+    count: int = eqx.field(static=True)
 
 
 class Rest(eqx.Module):
@@ -79,6 +93,29 @@ def normals(
 def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:
     """Return angles of the geometry, on the branch nearest to the given ones."""
     return angles + wrap(edge_angles(positions, rods) - angles)
+
+
+def closed(rest: Rest, rods: Rods) -> Rest:
+    """Return the rest shape of one step with the misfit of each ring shared by its joints.
+
+    The directions of edges cannot meet angles around a branch that do not add up to whole
+    turns. A sweep would leave all of the misfit to the joints that come first. A ring with a
+    joint of no stiffness, which takes up any misfit, stays.
+    """
+    rings = rods.rings
+    if rings is None:
+        return rest
+
+    def per_ring(reduce, values):
+        return reduce(values, rings.of, rings.count + 1)
+
+    # Not the nearest whole turns: commands may open joints by more than half a turn in all.
+    whole = jnp.append(rings.whole, 0.0)
+    misfit = per_ring(jax.ops.segment_sum, rings.sign * rest.angle) - whole
+    joints = per_ring(jax.ops.segment_sum, jnp.abs(rings.sign))
+    stiff = per_ring(jax.ops.segment_min, rods.bend) > 0
+    share = jnp.where(stiff, misfit / jnp.maximum(joints, 1.0), 0.0)
+    return Rest(rest.angle - rings.sign * share[rings.of], rest.length)
 
 
 def bend(angles: Angles, rods: Rods, rest: Rest) -> Angles:

@@ -105,6 +105,7 @@ class BodyGraphEncoding:
             turned=bones.turned.astype(dtype),
             placed=bones.placed.astype(dtype),
             pieces=groups,
+            bends=bones.bends,
             bend=rods.bend if self.softest < 1 else None,
         )
         world = replace(world, rods=rods, groups=groups, layout=layout, present=grown.present)

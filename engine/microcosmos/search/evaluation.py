@@ -13,7 +13,7 @@ from .. import units
 from ..filaments import Rest
 from ..genomes import Drive, Genotype
 from ..measures import FORMS
-from ..world import Limits, Measures, State, World, centre, flow, grown_nodes
+from ..world import Limits, Measures, State, World, flow, grown_nodes, route, together
 from .measures import (
     MEASURES,
     MOTION,
@@ -164,14 +164,13 @@ def measured(
 def motion_of(task: Task, driven: Drive, end: State, observed: Measures) -> dict[str, Any]:
     """Return measures of any actuator's motion."""
     length = length_of(task, driven)
-    values = motion(driven.world, driven.start, end, observed, length)
+    path = route(driven.world, driven.start, observed)
+    values = motion(driven.world, driven.start, end, observed, path, length)
     done = strokes(driven, task.period, len(observed.centre))
-    values["speed"], values["stride"] = swimming(observed.centre, done, length)
-    values["advance"] = advance(observed.centre, done, length)
-    values["cost_of_transport"] = cost_of_transport(
-        centre(driven.world, driven.start), observed, done, length
-    )
-    values |= kinematics(driven.world, observed, window(done), length)
+    values["speed"], values["stride"] = swimming(path.places[1:], done, length)
+    values["advance"] = advance(path.places[1:], done, length)
+    values["cost_of_transport"] = cost_of_transport(path.places, observed, done, length)
+    values |= kinematics(driven.world, observed, path, window(done), length)
     values["trial_spread"] = jnp.zeros_like(values["speed"])
     return with_named(task, driven, end, observed, values)
 
@@ -195,9 +194,10 @@ def poses_of(task: Task, driven: Drive, observed: Measures) -> Poses:
     """Return the pose stream of a simulation."""
     length = length_of(task, driven)
     last = window(strokes(driven, task.period, len(observed.centre)))
-    begun, present = centre(driven.world, driven.start), grown_nodes(driven.world)
-    edges = driven.world.rods.edges
-    return poses(begun, observed.centre, observed.positions, present, edges, last, length)
+    box, path = driven.world, route(driven.world, driven.start, observed)
+    at, present, edges = last.places(), grown_nodes(box), box.rods.edges
+    frames = together(box, observed.positions[at], observed.boxes[at])
+    return poses(path.places, frames, path.cells[at + 1], present, edges, last, length)
 
 
 def form_of(task: Task, driven: Drive) -> Mapping[str, Array]:
@@ -287,8 +287,10 @@ def swim(task: Task, rest: Rest, conditions: Conditions, period: int) -> Evaluat
     end, observed = simulate(driven)
     values, poses, valid = measured(task, driven, end, observed)
     whole = len(observed.power) > period
-    before = observed.centre[-1 - period] if whole else poses.path[0]
-    values["cycle_x"], values["cycle_y"] = observed.centre[-1] - before
+    path = route(driven.world, driven.start, observed)
+    # The kernel's own place at the start, which a page has too.
+    moved = path.way(-1 - period, -1) if whole else path.places[-1] - poses.path[0]
+    values["cycle_x"], values["cycle_y"] = moved
     measures = jnp.stack([values[name] for name in STROKE_MEASURES])
     valid = jnp.where(all_finite(measures), valid, STATUSES.index("non-finite"))
     return Evaluation(fitness_of(task, values), measures, valid)

@@ -18,7 +18,18 @@ from ..archive.poses import FRAMES, STROKES
 from ..filaments import Rest
 from ..measures import RECORDED as MEASURES
 from ..portable import product, root
-from ..world import Measures, State, World, centre, mean, present_edges, present_joints
+from ..world import (
+    Measures,
+    Route,
+    State,
+    World,
+    mean,
+    present_edges,
+    present_joints,
+    route,
+    together,
+    unwrapped,
+)
 from .window import Window
 
 Scalar = Float[Array, ""]
@@ -28,12 +39,13 @@ TINY = 1e-20
 
 
 def kinematics(
-    world: World, observed: Measures, window: Window, length: Scalar | float
+    world: World, observed: Measures, path: Route, window: Window, length: Scalar | float
 ) -> dict[str, Scalar]:
     """Measure the poses of a window; `length` is the body's, in cells."""
     at = window.places()
-    shapes, bends = observed.positions[at], observed.curvature[at]
-    moved = observed.centre[window.stop - 1] - observed.centre[jnp.maximum(window.start - 1, 0)]
+    shapes = together(world, observed.positions[at], observed.boxes[at])
+    bends = observed.curvature[at]
+    moved = path.way(jnp.maximum(window.start, 1), window.stop)
     beats, wave, direction = waves(bends, along(world))
     heading, aspect = axis(shapes, moved, world.present)
     spacing = _mean_edge(world, shapes[0])
@@ -168,12 +180,17 @@ def observe(state: State, measures: Measures) -> Measures:
 
 
 def motion(
-    world: World, start: State, end: State, observed: Measures, length: Scalar | float
+    world: World,
+    start: State,
+    end: State,
+    observed: Measures,
+    path: Route,
+    length: Scalar | float,
 ) -> dict[str, Any]:
     """Measure a motion; `observed` has time first, `length` is the body's, in cells."""
-    first, steps = centre(world, start), len(observed.node_speed)
-    moved = jnp.diff(jnp.concatenate([first[None], observed.centre]), axis=0)
-    displacement, path = _norm(observed.centre[-1] - first), jnp.sum(_norm(moved))
+    steps = len(observed.node_speed)
+    displacement = _norm(path.way(0, -1))
+    travelled = jnp.sum(_norm(path.way(slice(None, -1), slice(1, None))))
     edges, joints = present_edges(world), present_joints(world)
     power = jnp.mean(observed.power)
     nodes = len(start.positions) if world.present is None else jnp.sum(world.present)
@@ -183,14 +200,14 @@ def motion(
         "displacement": displacement,
         "bending_effort": effort(observed.rest.angle, joints),
         "stretching_effort": effort(observed.rest.length, edges),
-        "path_length": path,
-        "straightness": displacement / jnp.maximum(path, 1e-12),
+        "path_length": travelled,
+        "straightness": displacement / jnp.maximum(travelled, 1e-12),
         "rotation": mean(end.angles - start.angles, edges),
         "energy": jnp.zeros(()) if end.collected is None else jnp.sum(end.collected),
         "mach": units.mach(jnp.max(observed.speed)),
         "limited": jnp.mean(observed.held),
         "reynolds": units.reynolds(jnp.mean(observed.node_speed), length, world.viscosity),
-        "mean_speed": path / steps,
+        "mean_speed": travelled / steps,
         "turning": jnp.sum(jnp.abs(jnp.diff(heading))),
         "curvature_mean": curved,
         "curvature_spread": spread,
@@ -244,18 +261,18 @@ def _stroked(
 
 
 def cost_of_transport(
-    start: Float[Array, "2"],
+    path: Float[Array, "moment 2"],
     observed: Measures,
     strokes: Float[Array, "time"],
     length: Scalar | float,
 ) -> Scalar:
-    """Return the work on the fluid per length of the body that its centre moves.
+    """Return the work on the fluid per length of the body that its centre moves along `path`,
+    which begins before the first step.
 
     Over whole strokes after the first; over the whole simulation if there are fewer than two.
     A distance below a thousandth of the length counts as that.
     """
     work = jnp.concatenate([jnp.zeros(1, strokes.dtype), jnp.cumsum(observed.power)])
-    path = jnp.concatenate([start[None], observed.centre])
     done = jax.lax.stop_gradient(jnp.floor(strokes[-1] + 1e-3))
     ends = jnp.where(done >= 2, jnp.stack([jnp.ones_like(done), done]), jnp.zeros(2))
     since = jnp.concatenate([jnp.zeros(1, strokes.dtype), strokes])
@@ -376,20 +393,28 @@ def recorded_motion(
     measures: dict[str, Any],
     copies: int,
 ) -> Motion:
-    """Return a simulation in the form that named measures take."""
+    """Return a simulation in the form that named measures take.
+
+    Positions are unwrapped: in cells from the corner of the first box.
+    """
     first = mean(start.angles, present_edges(world))
     nodes = len(start.positions) // copies
     node = middle_node(nodes, None if world.present is None else world.present[:nodes])
     return Motion(
-        path=jnp.concatenate([centre(world, start)[None], observed.centre]),
+        path=route(world, start, observed).places,
         heading=jnp.concatenate([first[None], observed.heading]),
         rest=observed.rest,
         curvature=observed.curvature,
         node_speed=observed.node_speed,
         power=observed.power,
-        middle=jnp.concatenate([start.positions[node][None], observed.positions[:, node]]),
-        start=start.positions,
-        end=end.positions,
+        middle=jnp.concatenate(
+            [
+                unwrapped(world, start)[node][None],
+                unwrapped(world, observed)[:, node],
+            ]
+        ),
+        start=unwrapped(world, start),
+        end=unwrapped(world, end),
         viscosity=world.viscosity,
         measures=measures,
     )

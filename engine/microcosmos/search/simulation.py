@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-from ..filaments import Layout, Pairing, Rest, Rods
+from ..filaments import Layout, Pairing, Rest, Rings, Rods
 from ..genomes import Drive, carried_out
 from ..groups import Groups
 from ..portable import cosine, sine
@@ -33,7 +33,12 @@ def schooled(driven: Drive, places: Places) -> Drive:
     nodes, edges = len(start.positions), len(start.angles)
 
     def first(state: State) -> State:
-        return replace(state, positions=state.positions[:nodes], angles=state.angles[:edges])
+        return replace(
+            state,
+            positions=state.positions[:nodes],
+            angles=state.angles[:edges],
+            boxes=state.boxes[: world.groups.count],
+        )
 
     def control(_: World, state: State, given: Any) -> Rest:
         return _repeated(driven.control(world, first(state), given), copies, axis=0)
@@ -60,6 +65,7 @@ def _start(start: State, places: Places) -> State:
         start,
         positions=positions,
         angles=jnp.tile(start.angles, copies),
+        boxes=jnp.tile(start.boxes, (copies, 1)),
         collected=None if start.collected is None else jnp.tile(start.collected, copies),
     )
 
@@ -108,7 +114,20 @@ def _rods(rods: Rods, nodes: int, copies: int) -> Rods:
         edge_colours=colours(rods.edge_colours, nodes, edges),
         joint_colours=colours(rods.joint_colours, edges, joints),
         joints=None if rods.joints is None else _numbers(rods.joints, edges, copies),
+        rings=None if rods.rings is None else _rings(rods.rings, copies),
         **stiffness,
+    )
+
+
+def _rings(rings: Rings, copies: int) -> Rings:
+    count, none = rings.count, jnp.asarray(copies * rings.count)
+    of = jnp.tile(rings.of < count, copies)
+    of = jnp.where(of, _numbers(rings.of, count, copies), none)
+    return Rings(
+        of.astype(rings.of.dtype),
+        jnp.tile(rings.sign, copies),
+        jnp.tile(rings.whole, copies),
+        copies * count,
     )
 
 
@@ -126,6 +145,7 @@ def _layout(layout: Layout, copies: int) -> Layout:
             pieces.ascending,
         ),
         bend=None if layout.bend is None else jnp.tile(layout.bend, copies),
+        bends=None if layout.bends is None else jnp.tile(layout.bends, copies),
     )
 
 

@@ -63,7 +63,7 @@ class Poses(eqx.Module):
 
     positions: Int[Array, "*block frame node 2"]
     path: Float[Array, "*block moment 2"]
-    origin: Float[Array, "*block 2"]
+    middles: Float[Array, "*block frame 2"]
     scale: Scalar
     window: Window
     length: Scalar
@@ -72,29 +72,32 @@ class Poses(eqx.Module):
 
 
 def poses(
-    start: Float[Array, "2"],
-    centre: Float[Array, "time 2"],
-    positions: Float[Array, "time node 2"],
+    path: Float[Array, "step 2"],
+    frames: Float[Array, "frame node 2"],
+    corners: Float[Array, "frame 2"],
     present: Bool[Array, "node"],
     edges: Int[Array, "edge 2"],
     window: Window,
     length: Scalar | float,
 ) -> Poses:
-    """Record the poses of a simulation whose centre was at `start` before the first step."""
-    dtype = positions.dtype
-    frames = positions[window.places()]
+    """Record the poses of a simulation.
+
+    `path` is that of the centre, before the first step and after each. `frames` are positions
+    at `window.places()` from `corners` near the body, so that far places are not rounded.
+    """
+    dtype = frames.dtype
     grown = present[None, :, None]
-    low = jnp.min(jnp.where(grown, frames, jnp.inf), (0, 1))
-    high = jnp.max(jnp.where(grown, frames, -jnp.inf), (0, 1))
-    origin = (low + high) / 2
+    low = jnp.min(jnp.where(grown, frames, jnp.inf), 1)
+    high = jnp.max(jnp.where(grown, frames, -jnp.inf), 1)
+    middles = (low + high) / 2
     scale = jnp.maximum(jnp.max(high - low) / 2, 1e-6) / LEVELS
-    units = jnp.clip(jnp.rint((frames - origin[None, None]) / scale), -LEVELS, LEVELS)
-    whole = jnp.concatenate([start[None], centre])
-    moments = (2 * jnp.arange(MOMENTS) * len(centre) + MOMENTS - 1) // (2 * (MOMENTS - 1))
+    units = jnp.clip(jnp.rint((frames - middles[:, None]) / scale), -LEVELS, LEVELS)
+    steps = len(path) - 1
+    moments = (2 * jnp.arange(MOMENTS) * steps + MOMENTS - 1) // (2 * (MOMENTS - 1))
     return Poses(
         positions=jnp.where(grown, units, 0.0).astype(jnp.int16),
-        path=whole[moments],
-        origin=origin,
+        path=path[moments],
+        middles=corners + middles,
         scale=scale,
         window=window,
         length=jnp.asarray(length, dtype),
@@ -152,8 +155,8 @@ def _crossed(at: Int[Array, "node 2"], edges: Int[Array, "edge 2"]) -> Bool[Arra
     return divides & divides.T
 
 
-SHOWN = 7
-"""Numbers beside the measures: middle and scale of the poses, the window, the status."""
+SHOWN = 5
+"""Numbers beside the measures: the scale of the poses, the window, the status."""
 
 
 def summarise(
@@ -177,13 +180,13 @@ def summarise(
     operands, sizes = _operands(world, start, end, observed)
     scales = [world.viscosity, length, period or 0.0]
     operands += [clock, jnp.stack([jnp.asarray(one, jnp.float32) for one in scales])]
-    places, frames, scalars, measures = native.call(target, shapes, operands, sizes)
-    begun, stop, strokes, status = scalars[3:].astype(jnp.int32)
+    places, frames, middles, scalars, measures = native.call(target, shapes, operands, sizes)
+    begun, stop, strokes, status = scalars[1:].astype(jnp.int32)
     recorded = Poses(
         positions=frames.astype(jnp.int16),
         path=places,
-        origin=scalars[:2],
-        scale=scalars[2],
+        middles=middles,
+        scale=scalars[0],
         window=Window(begun, stop, strokes),
         length=jnp.asarray(length, jnp.float32),
         present=grown_nodes(world),
@@ -193,7 +196,7 @@ def summarise(
 
 
 def _results(nodes: int) -> Sequence[tuple[int, ...]]:
-    return [(MOMENTS, 2), (FRAMES, nodes, 2), (SHOWN,), (len(SUMMARISED),)]
+    return [(MOMENTS, 2), (FRAMES, nodes, 2), (FRAMES, 2), (SHOWN,), (len(SUMMARISED),)]
 
 
 def _operands(
@@ -201,7 +204,7 @@ def _operands(
 ) -> tuple[list[Any], dict[str, int]]:
     rods, (height, width) = world.rods, world.size
     collected = end.collected
-    graph = (rods.edges, rods.joints, grown_nodes(world))
+    graph = (rods.edges, rods.joints, world.groups.member, grown_nodes(world))
     around, features = native.surroundings_of(world)
     operands = [
         *end.populations,
@@ -209,6 +212,7 @@ def _operands(
         start.positions,
         start.angles,
         *(jnp.asarray(one, jnp.int32) for one in graph),
+        start.boxes,
         jnp.zeros(0, jnp.float32) if collected is None else collected,
         observed.rest.angle,
         observed.rest.length,

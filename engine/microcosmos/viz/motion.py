@@ -20,14 +20,14 @@ FIELDS = ("nodes", "edges", "size", "solid", "vorticity")
 def encode(replay: Replay) -> bytes:
     """Return poses as whole numbers, and the vorticity of fewer moments and larger squares."""
     kept = header(replay)
-    positions, origin, scale = quantised(replay.positions[:: stride(replay)])
+    positions, middles, scale = quantised(replay.positions[:: stride(replay)])
     last = (kept["frames"] - 1) * stride(replay)
     moments = np.rint(np.linspace(0, last, kept["moments"])).astype(int)
     fluid = means(replay.levels[moments], kept["square"])
-    text = json.dumps({"format": FORMAT, **kept, "origin": origin, "scale": scale}).encode()
+    text = json.dumps({"format": FORMAT, **kept, "scale": scale}).encode()
     # Aligned, so that a browser can view the numbers in place.
     text += b" " * (-len(text) % 4)
-    arrays = positions.astype("<i2"), fluid
+    arrays = middles.astype("<f4"), positions.astype("<i2"), fluid
     return b"".join((struct.pack("<I", len(text)), text, *(one.tobytes() for one in arrays)))
 
 

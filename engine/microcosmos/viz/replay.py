@@ -235,7 +235,8 @@ def _filmed(
 ) -> tuple[Recording, world.State, world.Measures]:
     def frame(state):
         u = world.flow(task.world, state)
-        return state.positions, vorticity(u), u, state.energy if changes else None
+        positions = world.unwrapped(driven.world, state)
+        return positions, vorticity(u), u, state.energy if changes else None
 
     def advance(state, given):
         end, seen = search.simulate(replace(driven, start=state, inputs=given))

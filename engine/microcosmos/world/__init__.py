@@ -6,6 +6,7 @@ from .model import (
     Form,
     Limits,
     Measures,
+    Route,
     State,
     World,
     at_rest,
@@ -16,7 +17,11 @@ from .model import (
     mean,
     present_edges,
     present_joints,
+    route,
+    together,
+    unwrapped,
     with_bodies,
+    within_box,
 )
 from .nodes import repel, sense
 from .stepping import follow, keep_memory, move, rollout, step

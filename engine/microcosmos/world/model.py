@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float, PyTree
+from jaxtyping import Array, Bool, Float, Int, PyTree
 
 from .. import coupling, fields, filaments, fluid
 from ..groups import Groups
@@ -76,7 +78,10 @@ class State(eqx.Module):
 
     populations: fluid.Populations
     positions: Vectors
+    """In cells, from the corner of the box that holds the body's anchor."""
     angles: Float[Array, "edge"]
+    boxes: Float[Array, "group 2"]
+    """Whole boxes between the first box and each body's: exact numbers up to 2²⁴."""
     energy: Float[Array, "x y"] | None = None
     collected: Float[Array, "node"] | None = None
     """Energy that each node has taken since the start."""
@@ -88,9 +93,12 @@ class Measures(eqx.Module):
     """The measures of a step; XLA removes the computation of those that are not used."""
 
     centre: Float[Array, "2"]
-    """The mean unwrapped node position at the end of the step, in cells."""
+    """The mean node position at the end of the step, in cells, from the corner of the box that
+    holds the first body's anchor."""
     positions: Vectors
-    """The unwrapped positions of nodes at the end of the step, in cells."""
+    """The positions of nodes at the end of the step, see `State.positions`."""
+    boxes: Float[Array, "group 2"]
+    """See `State.boxes`."""
     rest: filaments.Rest
     """The rest shape of the step."""
     speed: Float[Array, ""]
@@ -113,16 +121,23 @@ def at_rest(world: World, positions: Vectors) -> State:
     """Return a fluid at rest with bodies at `positions`, and the initial energy."""
     planes = tuple(jnp.zeros(world.size, positions.dtype) for _ in range(9))
     angles = filaments.edge_angles(positions, world.rods)
+    state = State(planes, positions, angles, _first_box(world, positions))
     if world.energy is None:
-        return State(planes, positions, angles)
-    return State(planes, positions, angles, world.energy.start, jnp.zeros_like(positions[:, 0]))
+        return state
+    collected = jnp.zeros_like(positions[:, 0])
+    return replace(state, energy=world.energy.start, collected=collected)
 
 
 def with_bodies(world: World, start: State, positions: Vectors) -> State:
     """Return a start with the bodies of `world` at `positions`, in the fluid of `start`."""
     angles = filaments.edge_angles(positions, world.rods)
     collected = None if start.collected is None else jnp.zeros_like(positions[:, 0])
-    return replace(start, positions=positions, angles=angles, collected=collected)
+    boxes = _first_box(world, positions)
+    return replace(start, positions=positions, angles=angles, boxes=boxes, collected=collected)
+
+
+def _first_box(world: World, positions: Vectors) -> Float[Array, "group 2"]:
+    return jnp.zeros((world.groups.count, 2), positions.dtype)
 
 
 def flow(world: World, state: State) -> fluid.Vectors:
@@ -173,14 +188,115 @@ def grown_rods(rods: filaments.Rods, present: Bool[Array, "node"]) -> filaments.
 
 
 def mean(values: Float[Array, "item *rest"], kept: Bool[Array, "item"] | None):
-    """Return the mean of present items, over the first axis."""
+    """Return the mean of present items, over the first axis; 0 without any."""
     if kept is None:
         return jnp.mean(values, 0)
     mask = kept.reshape(-1, *(1,) * (values.ndim - 1))
     # Absent items may hold any number: they are masked, not multiplied by 0.
-    return jnp.sum(jnp.where(mask, values, 0.0), 0) / jnp.sum(kept)
+    return jnp.sum(jnp.where(mask, values, 0.0), 0) / jnp.maximum(jnp.sum(kept), 1)
 
 
 def centre(world: World, state: State) -> Float[Array, "2"]:
-    """Return the mean unwrapped node position, in cells."""
-    return mean(state.positions, world.present)
+    """Return the mean node position in cells, from the corner of the first body's box."""
+    if world.groups.count == 1:
+        return mean(state.positions, world.present)
+    return mean(together(world, state.positions, state.boxes), world.present)
+
+
+def together(
+    world: World,
+    positions: Float[Array, "*time node 2"],
+    boxes: Float[Array, "*time group 2"],
+) -> Float[Array, "*time node 2"]:
+    """Return the positions of all nodes in cells, from the corner of the box of the first body
+    that has grown."""
+    away = boxes - jnp.broadcast_to(leading(world, boxes)[..., None, :], boxes.shape)
+    return positions + _per_node(world, _cells(world, away))
+
+
+def leading(world: World, boxes: Float[Array, "*time group 2"]) -> Float[Array, "*time 2"]:
+    """Return the box of the first body of which a node has grown."""
+    grown = has_grown(world)
+    return boxes[..., 0, :] if grown is None else jnp.take(boxes, jnp.argmax(grown), axis=-2)
+
+
+def unwrapped(world: World, seen: State | Measures) -> Float[Array, "*time node 2"]:
+    """Return the positions of all nodes in cells, from the corner of the first box.
+
+    `seen` are a state, or measures, which may have time first. Rounding grows with the
+    distance: a way is better measured with `route`.
+    """
+    return seen.positions + _per_node(world, _cells(world, seen.boxes))
+
+
+class Route(eqx.Module):
+    """The centre of all nodes before the first step and after each of a simulation."""
+
+    centre: Float[Array, "time 2"]
+    """In cells, from the corner of the box of the first body that has grown."""
+    cells: Float[Array, "time 2"]
+    """From the corner of its box at the start to that of its box, in cells."""
+
+    @property
+    def places(self) -> Float[Array, "time 2"]:
+        """Centres in cells, from the corner of the first body's box at the start."""
+        return self.centre + self.cells
+
+    def way(self, before: Any, after: Any) -> Float[Array, "*times 2"]:
+        """Return the ways between two times, or many, without the rounding of far places."""
+        return (self.centre[after] - self.centre[before]) + (
+            self.cells[after] - self.cells[before]
+        )
+
+
+def route(world: World, start: State, observed: Measures) -> Route:
+    """Return the route of a simulation; `observed` has time first."""
+    centres = jnp.concatenate([centre(world, start)[None], observed.centre])
+    first = leading(world, start.boxes)[None]
+    boxes = jnp.concatenate([first, leading(world, observed.boxes)])
+    return Route(centres, _cells(world, boxes - jnp.broadcast_to(first, boxes.shape)))
+
+
+def within_box(world: World, state: State) -> State:
+    """Return the same state with each body in the box that holds its anchor, its first node
+    that has grown.
+
+    Positions so far from the origin that rounding would swallow a step are never formed.
+    """
+    places = state.positions[anchors(world)]
+    whole = jax.lax.stop_gradient(jnp.floor(places / _cells(world, jnp.ones_like(places))))
+    grown = has_grown(world)
+    if grown is not None:
+        whole = jnp.where(grown[:, None], whole, 0.0)
+    positions = state.positions - _per_node(world, _cells(world, whole))
+    return replace(state, positions=positions, boxes=state.boxes + whole)
+
+
+def _cells(world: World, boxes: Float[Array, "*any 2"]) -> Float[Array, "*any 2"]:
+    """Return the lengths of whole boxes in cells."""
+    return boxes * jnp.broadcast_to(jnp.array(world.size, boxes.dtype), boxes.shape)
+
+
+def _per_node(
+    world: World, values: Float[Array, "*time group 2"]
+) -> Float[Array, "*time node 2"]:
+    # One body's value is broadcast: an index for each node costs more.
+    return values if world.groups.count == 1 else values[..., world.groups.member, :]
+
+
+def has_grown(world: World) -> Bool[Array, "group"] | None:
+    """Return the mask of the bodies of which a node has grown; None: all."""
+    if world.present is None:
+        return None
+    return world.groups.largest(world.present.astype(jnp.int32)) > 0
+
+
+def anchors(world: World) -> Int[Array, "group"]:
+    """Return the first node of each body that has grown; any node where none has."""
+    nodes = len(world.groups.member)
+    if world.groups.count == 1 and world.present is None:
+        return jnp.zeros(1, jnp.int32)
+    left = jnp.arange(nodes, 0, -1)
+    if world.present is not None:
+        left = jnp.where(world.present, left, 1)
+    return nodes - world.groups.largest(left)

@@ -52,6 +52,7 @@ OBSERVED = (
     "curvature",
     "power",
     "force",
+    "boxes",
 )
 """Measures in the order of the kernel's results."""
 ALONE: Numbers = {"threads": 1, "observed": True, "timed": False}
@@ -174,9 +175,11 @@ def advance(
     return end, results[-2], results[-1][0]
 
 
-def part_seconds(world: World, state: State, rest: filaments.Rest) -> Float[Array, "part"]:
+def part_seconds(
+    world: World, state: State, rest: filaments.Rest, threads: int = 1
+) -> Float[Array, "part"]:
     """Return the time that a rollout spends in each of `PARTS`, in seconds."""
-    return _rollout(world, state, rest, None, {"timed": True})[1][-2]
+    return _rollout(world, state, rest, None, {"timed": True, "threads": threads})[1][-2]
 
 
 def _rollout(
@@ -196,11 +199,15 @@ def _rollout(
     shapes = _results(world, state, options["steps"] if options["observed"] else 0, closed)
     results = call(register("rollout", instruction_set), shapes, operands, options)
     end = replace(
-        state, populations=tuple(results[:9]), positions=results[9], angles=results[10]
+        state,
+        populations=tuple(results[:9]),
+        positions=results[9],
+        angles=results[10],
+        boxes=results[11],
     )
     if state.energy is not None:
-        end = replace(end, energy=results[11], collected=results[12])
-    return end, results[13:]
+        end = replace(end, energy=results[12], collected=results[13])
+    return end, results[14:]
 
 
 def rollout_operands(
@@ -222,6 +229,7 @@ def rollout_operands(
         *body,
         *stiffness_of(world),
         _parameters(world),
+        state.boxes,
         field,
         _collected(state),
         *smoothing_of(world),
@@ -289,12 +297,12 @@ def _results(world: World, state: State, steps: int, closed: bool) -> list[tuple
     joints, edges = _counts(world)
     nodes, bodies = len(state.positions), world.groups.count
     energetic, commanded = state.energy is not None, steps if closed else 0
-    end = [world.size] * 9 + [(nodes, 2), (edges,)]
+    end = [world.size] * 9 + [(nodes, 2), (edges,), (bodies, 2)]
     end += [(world.size[0] * energetic, world.size[1]), (nodes * energetic,)]
     rest = [(commanded, joints), (commanded, edges)]
     numbers = [(steps,)] * 4
     observed = [(steps, 2), (steps, nodes, 2), *numbers, (steps, joints), (steps,)]
-    return [*end, *rest, *observed, (steps, bodies, 2), (len(PARTS),), (1,)]
+    return [*end, *rest, *observed, *[(steps, bodies, 2)] * 2, (len(PARTS),), (1,)]
 
 
 def _parameters(world: World) -> Array:

@@ -2,14 +2,18 @@
 
 from dataclasses import replace
 
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .. import coupling, fields
 from ..groups import Groups
-from .model import State, World, grown_nodes
+from .model import State, World, anchors, grown_nodes, has_grown
 
 Vectors = Float[Array, "node 2"]
+
+TIE = 1e-4
+"""Displacement in cells of bodies in exactly one place; the next steps make it grow."""
 Scalars = Float[Array, "node"]
 Scalar = Float[Array, ""]
 
@@ -68,8 +72,29 @@ def _apart(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
     if world.groups.count == 1:
         return within, jnp.zeros_like(positions)
     moved = coupling.force_free(push, weights, positions, world.groups)
-    turned = _turned(rigid - moved, moved, weights, world.groups, world.steric.limit)
+    rotation, moved = rigid - moved, moved + _parted(world, positions)
+    turned = _turned(rotation, moved, weights, world.groups, world.steric.limit)
     return within, fields.capped(moved, world.steric.limit) + turned
+
+
+def _parted(world: World, positions: Vectors) -> Vectors:
+    """Return displacements that part bodies which stand in exactly one place.
+
+    There they push each other nowhere. Of n such bodies each takes another of n directions, so
+    that the displacements of equal bodies add up to nothing.
+    """
+    at = jax.lax.stop_gradient(positions[anchors(world)])
+    same = jnp.all(at[:, None] == at[None], 2)
+    grown = has_grown(world)
+    if grown is not None:  # Bodies of which nothing has grown stand nowhere.
+        same = same & grown[:, None] & grown[None]
+    body = jnp.arange(len(at))
+    count, before = jnp.sum(same, 1), jnp.sum(same & (body[None] < body[:, None]), 1)
+    # Along a filament they would slide over each other: few have just this direction.
+    turn = 1 + 2 * jnp.pi * before.astype(at.dtype) / jnp.maximum(count, 1).astype(at.dtype)
+    way = TIE * jnp.stack([jnp.cos(turn), jnp.sin(turn)], 1)
+    parted = count > 1
+    return world.groups.per_node(jnp.where(parted[:, None], way, 0.0))
 
 
 def _turned(
@@ -82,7 +107,7 @@ def _turned(
     the net push, which is contact alone, at the body's farthest node.
     """
     square = jnp.sum(turned * turned, 1)
-    mean = groups.total(weights * square) / groups.total(weights)
+    mean = groups.mean(square, weights)
     tip = jnp.sqrt(groups.largest(weights * square) + 1e-24)
     push = jnp.sqrt(groups.largest(weights * jnp.sum(moved * moved, 1)) + 1e-24)
     # Constants keep roots and quotients differentiable where nothing touches.
@@ -106,8 +131,8 @@ def _kept_out(world: World, positions: Vectors) -> Vectors:
     touching = groups.total(weight) + 1e-9
     moved = groups.per_node(groups.total(weight[:, None] * away) / touching[:, None])
     weights = _weights(world, positions)
-    centre = groups.total(weights[:, None] * positions) / groups.total(weights)[:, None]
-    arm, left = positions - groups.per_node(centre), away - moved
+    centre = groups.per_node(groups.mean(positions, weights))
+    arm, left = positions - centre, away - moved
     torque = groups.total(weight * (arm[:, 0] * left[:, 1] - arm[:, 1] * left[:, 0]))
     tip = jnp.sqrt(groups.largest(weights * jnp.sum(arm * arm, 1)) + 1e-24)
     turn = torque / touching / tip

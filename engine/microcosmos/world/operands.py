@@ -28,11 +28,11 @@ def body_of(
     graph = (rods.edges, rods.joints, world.groups.member, pieces, grown_nodes(world))
     arrays = [state.positions, state.angles, *(jnp.asarray(one, jnp.int32) for one in graph)]
     if layout is None:
-        edges, joints = len(rods.edges), len(rods.bend)
-        arrays += [_nothing(0), _nothing(0), _nothing(0, joints), _nothing(0, edges)]
+        arrays += [_nothing(0), _nothing(0), jnp.zeros(0, jnp.int32)]
     else:
-        parts = (layout.angle, layout.rest_angle, layout.turned, layout.placed)
-        arrays += [jnp.asarray(one, jnp.float32) for one in parts]
+        bends = jnp.ones(len(rods.bend), bool) if layout.bends is None else layout.bends
+        arrays += [jnp.asarray(one, jnp.float32) for one in (layout.angle, layout.rest_angle)]
+        arrays.append(jnp.asarray(bends, jnp.int32))
     sizes = {
         "nodes": nodes,
         "edges": len(rods.edges),
@@ -45,16 +45,18 @@ def body_of(
 
 
 def stiffness_of(world: World) -> list[Array]:
-    """Return the colours of edges and joints, then all stiffnesses.
+    """Return the colours of edges and joints, the whole turns of each joint's ring, then all
+    stiffnesses.
 
-    Shape matching needs no colours: they then have no items.
+    Shape matching needs neither colours nor turns: they then have no items.
     """
     rods, nodes = world.rods, len(world.groups.member)
     stiffness = [rods.stretch, rods.shear, rods.bend]
     if world.layout is not None:
         if world.layout.bend is not None:  # Soft joints of a matched shape have their own.
             stiffness[2] = world.layout.bend
-        return [jnp.zeros(0, jnp.int32), jnp.zeros(0, jnp.int32), *stiffness]
+        none = jnp.zeros(0, jnp.int32)
+        return [none, none, _nothing(0), *stiffness]
     # Colours may be those of the first of several chunks of equal bodies.
     chunk = len(rods.edge_colours[0].partner)
     colours = [
@@ -64,7 +66,10 @@ def stiffness_of(world: World) -> list[Array]:
             (rods.joint_colours, len(rods.bend)),
         )
     ]
-    return [*colours, *stiffness]
+    whole = _nothing(len(rods.bend))
+    if rods.rings is not None:
+        whole = jnp.append(rods.rings.whole, 0.0)[rods.rings.of]
+    return [*colours, whole, *stiffness]
 
 
 def smoothing_of(world: World) -> list[Array]:

@@ -21,6 +21,7 @@ from .model import (
     present_edges,
     present_joints,
     present_points,
+    within_box,
 )
 from .nodes import collect, repel
 
@@ -54,6 +55,7 @@ def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> M
         rest=rest,
         centre=centre(world, end),
         positions=end.positions,
+        boxes=end.boxes,
         heading=mean(end.angles, present_edges(world)),
         curvature=curvature(world, end.positions, end.angles),
         power=jnp.sum(pushed.forcing * pushed.target),
@@ -128,7 +130,8 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
     # Nodes collect where they stood before the step, so the windows `at` serve once more.
     held = _held(motion, forced, groups)
     pushed = Pushed(fluid.fastest(rho, moving), forcing, forced.target, motion.target, held)
-    return collect(world, end, at), measure(world, end, rest, pushed)
+    end = within_box(world, collect(world, end, at))
+    return end, measure(world, end, rest, pushed)
 
 
 def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
@@ -143,7 +146,8 @@ def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State,
     target = coupling.at_points(motion.target, layers)
     nothing, held = jnp.zeros_like(target), (motion.shortened < 1).astype(positions.dtype)
     pushed = Pushed(jnp.zeros((), positions.dtype), nothing, target, motion.target, held)
-    return collect(world, end, _windows(world, state)), measure(world, end, rest, pushed)
+    end = within_box(world, collect(world, end, _windows(world, state)))
+    return end, measure(world, end, rest, pushed)
 
 
 def move(world: World, state: State, rest: filaments.Rest, velocity: Vectors) -> Motion:
@@ -176,6 +180,7 @@ def _constrained(
     rods = world.rods
     if world.nu_c is not None:
         rods = replace(rods, bend=rods.bend / (1 + world.viscosity / world.nu_c))
+    rest = filaments.closed(rest, rods)
     return filaments.project(
         positions, angles, rods, rest, iterations=world.form.constraint_iterations
     )

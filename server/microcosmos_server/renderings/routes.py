@@ -64,12 +64,12 @@ def from_replay(artifacts: Artifacts, replay: Artifact, creature: str) -> bytes:
     whole = np.frombuffer(data, "<f4").reshape(shape)
     stride = max(1, -(-(len(whole) - 1) // poses.FRAMES))
     kept = whole[::stride]
-    positions, origin, scale = poses.quantised(kept[1:] if len(kept) > 1 else kept)
+    positions, middles, scale = poses.quantised(kept[1:] if len(kept) > 1 else kept)
     edges = np.array(header["edges"], int).reshape(-1, 2)
     return poses.PoseStream(
         positions=positions,
         path=kept.mean(1),
-        origin=origin,
+        middles=middles,
         scale=scale,
         edges=edges,
         start=0,

@@ -28,12 +28,12 @@ SPEC = '{"task": {"steps": 900}, "world": {"width": 48, "height": 40}}'
 
 def stream(nodes=5, seed=0, **changes):
     random = np.random.default_rng(seed)
-    positions, origin, scale = quantised(20 + random.normal(size=(FRAMES, nodes, 2)))
+    positions, middles, scale = quantised(20 + random.normal(size=(FRAMES, nodes, 2)))
     edges = np.stack([np.arange(nodes - 1), np.arange(1, nodes)], 1)
     made = PoseStream(
         positions=positions,
         path=random.normal(size=(MOMENTS, 2)).astype(np.float32),
-        origin=origin,
+        middles=middles,
         scale=float(np.float32(scale)),
         edges=edges,
         start=500,
@@ -74,12 +74,15 @@ def test_other_bytes_are_refused(damage, named):
 
 def test_quantised_positions_are_within_half_a_unit():
     positions = np.random.default_rng(0).uniform(-300, 700, (FRAMES, 9, 2))
-    units, origin, scale = quantised(positions)
-    assert np.abs(origin + scale * units - positions).max() < 0.51 * scale
-    assert scale == pytest.approx(500 / 32767, rel=0.01)
+    units, middles, scale = quantised(positions)
+    assert np.abs(middles[:, None] + scale * units - positions).max() < 0.51 * scale
+    assert scale == pytest.approx(np.ptp(positions, 1).max() / 2 / 32767, rel=1e-6)
+    far = positions / 100 + 50_000 * np.arange(FRAMES)[:, None, None] / FRAMES
+    units, middles, scale = quantised(far)
+    assert np.abs(middles[:, None] + scale * units - far).max() < 0.005, "as float32 holds it"
     still = np.full((FRAMES, 2, 2), 3.0)
-    units, origin, scale = quantised(still)
-    np.testing.assert_array_equal(origin + scale * units, still)
+    units, middles, scale = quantised(still)
+    np.testing.assert_array_equal(middles[:, None] + scale * units, still)
 
 
 @pytest.mark.parametrize("sizes", [(5, 5, 5), (5, 2, 9), ()])

@@ -9,7 +9,7 @@ from pose_streams import stream
 from microcosmos.archive import variety
 from microcosmos.archive.poses import FRAMES
 
-NOISE = 2e-4
+NOISE = 3e-4
 """Distance of equal motions: poses are in 16 bits, sums in single precision."""
 
 

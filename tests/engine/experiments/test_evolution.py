@@ -1,6 +1,7 @@
 """A search with an archive: it only improves, keeps lineages, and can be extended."""
 
 from dataclasses import replace
+from functools import partial
 
 import equinox as eqx
 import jax
@@ -9,12 +10,16 @@ import numpy as np
 import pytest
 
 import microcosmos
-from microcosmos import naming, search
+from microcosmos import naming, search, world
 from microcosmos.archive import creature, poses, variety
 from microcosmos.archive.report import SPECIES
 from microcosmos.build import build, build_task
 from microcosmos.search import MEASURES, STATUSES, LocalDevices
 from microcosmos.spec.evolution import UNLIMITED
+
+
+def nodes_in(box, state, _):
+    return world.unwrapped(box, state)
 
 
 def test_the_archive_only_improves(course):
@@ -85,7 +90,7 @@ def test_pose_streams_are_what_a_simulation_of_the_elites_gives(experiment, cour
     for cell, one in list(zip(cells, found, strict=True))[::5]:
         genotype = jax.tree.map(lambda x, cell=cell: x[cell], state.elites.genotypes)
         driven = search.drive(task, genotype)
-        _, seen = search.simulate(driven, lambda state, measures: state.positions)
+        _, seen = search.simulate(driven, partial(nodes_in, driven.world))
         shown = np.asarray(seen)[one.times - 1]
         np.testing.assert_allclose(one.cells, shown, atol=1e-3)
         assert one.stop == one.steps == len(seen)

@@ -22,6 +22,7 @@ from microcosmos.spec import parse
 from microcosmos.viz.figures import reading
 from microcosmos.viz.figures.reading import chosen
 from microcosmos.widgets import contents
+from microcosmos.world import unwrapped
 
 SPEC = {
     "experiment": "quality-diversity",
@@ -91,7 +92,7 @@ def test_it_is_computed_from_the_motion_that_either_kernel_records(monkeypatch, 
         driven = search.drive(task, genotype)
         end, observed = search.simulate(driven)
         values, *_ = measured(task, driven, end, observed)
-        return values["tortuosity"], driven.start.positions, observed.positions
+        return values["tortuosity"], driven.start.positions, unwrapped(driven.world, observed)
 
     found, start, later = jax.device_get(run(any_genotype(scene, task.encoding, rng)))
     middle = np.concatenate([start[None], later])[:, 4].astype(float)

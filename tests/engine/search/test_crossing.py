@@ -23,8 +23,11 @@ def recorded(shapes, edges=CHAIN, present=None) -> Poses:
     begin, end = jnp.asarray(0), jnp.asarray(FRAMES)
     whole = Window(start=begin, stop=end, strokes=jnp.asarray(2))
     centre = positions.mean(1)
-    args = centre[0], centre, positions, jnp.asarray(there), jnp.asarray(edges), whole, 1.0
-    return poses(*args)
+    path, graph = (
+        jnp.concatenate([centre[:1], centre]),
+        (jnp.asarray(there), jnp.asarray(edges)),
+    )
+    return poses(path, positions[whole.places()], jnp.zeros((FRAMES, 2)), *graph, whole, 1.0)
 
 
 def share(shapes, start=OPEN, **options):

@@ -112,9 +112,14 @@ def test_poses_are_the_positions_at_those_steps(float64):
     centre, kept = positions.mean(1), np.arange(5) != 3
     last = window(np.arange(1.0, 301) / 100)
     none = np.zeros((0, 2), int)
-    found = jax.jit(poses)(np.zeros(2), centre, positions, kept, none, last, array(4.0))
-    cells = np.asarray(found.origin) + np.asarray(found.scale) * np.asarray(found.positions)
-    shown = np.asarray(positions)[np.asarray(last.places())]
+    at = np.asarray(last.places())
+    path = np.concatenate([np.zeros((1, 2)), centre])
+    corners = np.cumsum(random.integers(-40, 40, (FRAMES, 2)), 0).astype(float)
+    given = path, positions[at], corners, kept, none, last, array(4.0)
+    found = jax.jit(poses)(*given)
+    offsets = np.asarray(found.scale) * np.asarray(found.positions)
+    cells = np.asarray(found.middles)[:, None] + offsets
+    shown = positions[at] + corners[:, None]
     np.testing.assert_allclose(cells[:, kept], shown[:, kept], atol=float(found.scale))
     assert float(found.scale) < 2e-4
     np.testing.assert_array_equal(found.path[0], 0)

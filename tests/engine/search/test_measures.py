@@ -103,7 +103,8 @@ def swimming(immerse, float64):
     @jax.jit
     def run():
         end, (observed, states, measures) = world.rollout(box, start, rest, record)
-        return states, measures, search.motion(box, start, end, observed, 7.0)
+        path = world.route(box, start, observed)
+        return states, measures, search.motion(box, start, end, observed, path, 7.0)
 
     return start, *run()
 

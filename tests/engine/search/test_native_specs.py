@@ -21,7 +21,7 @@ import pytest
 import spec_cases
 import spec_draws
 from genotypes import any_genotype
-from kernel_scenes import OBSERVED
+from kernel_scenes import OBSERVED, unwrapped
 from reference_runs import exact, samples
 
 from microcosmos import device, plugins, search, spec, world
@@ -110,6 +110,7 @@ def motion(task, actuator):
         driven = search.shift_energy(driven, task.placements[-1])
     end, observed = search.simulate(driven)
     found = {name: getattr(observed, name) for name in OBSERVED}
+    found |= unwrapped(driven.world, driven.start, observed)
     found |= {
         "rest angle": among(observed.rest.angle, world.present_joints(driven.world)),
         "rest length": among(observed.rest.length, world.present_edges(driven.world)),

@@ -10,6 +10,7 @@ import pytest
 from microcosmos import search, spec
 from microcosmos.build import build_stroke, build_task
 from microcosmos.genomes import Drive
+from microcosmos.world import unwrapped
 
 STEPS, PERIOD = 400, 200
 BODY = {"builder": "worm"}
@@ -66,8 +67,8 @@ def test_mirror_images_stay_mirror_images():
         return replace(driven, inputs=replace(driven.inputs, angle=angle))
 
     with jax.enable_x64(True):
-        _, _, end, _ = swum(gait(column(14)), jnp.dtype("float64"), mirrored)
-        one, other = np.split(np.asarray(end.positions), 2)
+        _, driven, end, _ = swum(gait(column(14)), jnp.dtype("float64"), mirrored)
+        one, other = np.split(np.asarray(unwrapped(driven.world, end)), 2)
         np.testing.assert_allclose(other * [1, -1] + [0, 96], one, atol=1e-8)
         assert np.abs(one - other - [0, -14]).max() > 0.01
 
@@ -79,7 +80,7 @@ def test_the_middle_of_a_school_is_that_of_its_first_copy(count):
     middle = search.Measure("middle", lambda motion: motion.middle[-1, 1])
     found = motion_of(replace(task, named_measures=(middle,)), driven, end, seen)
     nodes = len(task.start.positions)
-    assert float(found["middle"]) == float(end.positions[nodes // 2, 1])
+    assert float(found["middle"]) == float(unwrapped(driven.world, end)[nodes // 2, 1])
     assert float(found["nodes"]) == count * nodes == task.copies * nodes
 
 
@@ -90,13 +91,16 @@ def test_far_copies_swim_like_one():
         dtype = jnp.dtype("float64")
         task, driven, end, seen = swum(gait(size=(48, 48)), dtype)
         alone = motion_of(task, driven, end, seen)
+        single = unwrapped(driven.world, end)
         many = {"count": 4, "arrangement": "grid", "spacing": 48}
         task, driven, last, seen = swum(gait(many), dtype)
         school = motion_of(task, driven, last, seen)
         for place, one in zip(
-            np.asarray(task.places), np.split(np.asarray(last.positions), 4), strict=True
+            np.asarray(task.places),
+            np.split(np.asarray(unwrapped(driven.world, last)), 4),
+            strict=True,
         ):
-            np.testing.assert_allclose(one - place - 24, end.positions, atol=1e-8)
+            np.testing.assert_allclose(one - place - 24, single, atol=1e-8)
         for name in ("speed", "displacement", "symmetry", "curvature_mean", "rotation", "mach"):
             np.testing.assert_allclose(school[name], alone[name], rtol=1e-6, atol=1e-9)
         for name in ("power", "nodes", "cost_of_transport"):

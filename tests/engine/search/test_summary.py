@@ -66,8 +66,8 @@ def agree(scene, period):
         # JAX adds in single precision.
         np.testing.assert_allclose(found[one], expected[one], 2e-4, 2e-6, err_msg=one)
     assert valid == outcome == 0
-    alike = {"positions": 1, "path": 1e-5, "origin": 1e-5, "scale": 1e-6}
-    for one in ("positions", "path", "origin", "scale", "length", "present"):
+    alike = {"positions": 1, "path": 5e-5, "middles": 5e-5, "scale": 1e-6}
+    for one in ("positions", "path", "middles", "scale", "length", "present"):
         given = getattr(shown, one), getattr(poses, one)
         np.testing.assert_allclose(*given, rtol=0, atol=alike.get(one, 0), err_msg=one)
     assert shown.window == poses.window

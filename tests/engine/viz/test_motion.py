@@ -28,10 +28,13 @@ def parts(data):
     (length,) = struct.unpack_from("<I", data)
     header = json.loads(data[4 : 4 + length])
     frames, nodes, square = (header[name] for name in ("frames", "nodes", "square"))
-    units = np.frombuffer(data, "<i2", 2 * frames * nodes, 4 + length)
+    middles = np.frombuffer(data, "<f4", 2 * frames, 4 + length).reshape(frames, 1, 2)
+    units = np.frombuffer(data, "<i2", 2 * frames * nodes, 4 + length + middles.nbytes)
     shape = header["moments"], *(-(-side // square) for side in header["size"])
-    levels = np.frombuffer(data, np.int8, offset=4 + length + units.nbytes).reshape(shape)
-    places = header["origin"] + header["scale"] * units.reshape(frames, nodes, 2)
+    levels = np.frombuffer(
+        data, np.int8, offset=4 + length + middles.nbytes + units.nbytes
+    ).reshape(shape)
+    places = middles + header["scale"] * units.reshape(frames, nodes, 2)
     return header, places, levels
 
 

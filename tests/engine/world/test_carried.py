@@ -35,7 +35,7 @@ def in_box(box, place, **surroundings):
 
 def carried(path, built, start, steps):
     end, seen = roll(path, built, start, scenes.held(PAIR, steps, "float32"), lambda seen: seen)
-    return np.asarray(end.positions - start.positions, float).mean(0), seen
+    return scenes.moved(built, start, end).mean(0), seen
 
 
 @pytest.mark.parametrize("varied", [False, True])

@@ -29,7 +29,8 @@ def loss(immerse, network_of):
             weights, viscosity = inputs
             rest = genomes.develop(replace(cppn, weight=weights), controls)
             end, _ = world.rollout(replace(box, viscosity=viscosity), start, rest)
-            return jnp.sum((jnp.mean(end.positions - start.positions, 0) - 0.3) ** 2)
+            moved = world.unwrapped(box, end) - start.positions
+            return jnp.sum((jnp.mean(moved, 0) - 0.3) ** 2)
 
         return travelled, (cppn.weight, box.viscosity)
 

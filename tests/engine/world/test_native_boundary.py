@@ -16,7 +16,7 @@ native = world.native
 
 PLANES = ["a plane"] * 9
 BODY = ["positions", "angles", "edges", "joints", "member", "piece", "present"]
-LAYOUT = ["layout angles", "layout rest angles", "turned", "placed"]
+LAYOUT = ["layout angles", "layout rest angles", "bends"]
 CONTROLLER = [
     "bounds of the controller",
     *["activations", "biases", "sources", "targets", "weights", "timer", "ramp"],
@@ -36,7 +36,8 @@ OPERANDS = {
         *LAYOUT,
         "colours of edges",
         "colours of joints",
-        *["stretch", "shear", "bend", "parameters", "energy", "collected"],
+        "whole turns",
+        *["stretch", "shear", "bend", "parameters", "boxes", "energy", "collected"],
         "smoothing across rows",
         "smoothing along rows",
         "uniform force",
@@ -55,11 +56,11 @@ OPERANDS = {
     "summarise": [
         *PLANES,
         *["uniform force", "forces across rows", "forces along rows", "walls"],
-        *["positions", "angles", "edges", "joints", "present", "collected"],
+        *["positions", "angles", "edges", "joints", "member", "present", "boxes", "collected"],
         "rest angles",
         "rest lengths",
         *("centre", "path", "speed", "node speed", "held", "heading", "curvature", "power"),
-        *("force", "clock", "scales"),
+        *("force", "box", "clock", "scales"),
     ],
 }
 """Names of operands in errors, in their order."""

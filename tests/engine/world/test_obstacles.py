@@ -45,7 +45,7 @@ def test_a_flow_does_not_carry_a_body_into_posts(body, dtype):
     box, start = among(POSTS, body, dtype, (14.0, 22.0), push=3e-5)
     rest = held(body, 3000, dtype)
     _, seen = world.rollout(box, start, rest, lambda state, measures: measures)
-    moved = float(seen.centre[-1, 0] - seen.centre[0, 0])
+    moved = float(world.route(box, start, seen).way(0, -1)[0])
     assert moved > 5
     assert depth(seen.positions, POSTS) < 0.5
     assert np.abs(np.cumsum(seen.force, 0)).max() < 1e-4

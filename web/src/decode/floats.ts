@@ -4,15 +4,22 @@
 export const floatsAt = (buffer: ArrayBuffer, start: number, count: number) =>
   new Float32Array(buffer.slice(start, start + 4 * count));
 
-/** Places (place, 2) in cells, which a file holds as int16 units about an origin. */
+/**
+ * Places (frame, node, 2) in cells, and where they end in the file, which holds the middle (frame, 2) of each
+ * frame and then int16 units about it.
+ */
 export function decodePlaces(
   buffer: ArrayBuffer,
   start: number,
-  count: number,
-  { origin, scale }: { origin: [number, number]; scale: number },
-): Float32Array {
-  const units = new Int16Array(buffer.slice(start, start + 4 * count));
-  return Float32Array.from(units, (unit, i) => origin[i % 2]! + scale * unit);
+  { frames, nodes, scale }: { frames: number; nodes: number; scale: number },
+): { places: Float32Array; end: number } {
+  const middles = floatsAt(buffer, start, 2 * frames);
+  const first = start + middles.byteLength;
+  const units = new Int16Array(buffer.slice(first, first + 4 * frames * nodes));
+  const places = Float32Array.from(units, (unit, i) => {
+    return middles[2 * Math.floor(i / (2 * nodes)) + (i % 2)]! + scale * unit;
+  });
+  return { places, end: first + units.byteLength };
 }
 
 export function decodeFloats(text: string): Float32Array {

@@ -13,22 +13,23 @@ const HEADER = {
   vorticity: { scale: 1 },
   moments: 2,
   square: 2,
-  origin: [10, 20],
   scale: 0.5,
 };
 
-function bytesOf(header: object, units: number[], levels: number[]): ArrayBuffer {
+function bytesOf(header: object, middles: number[], units: number[], levels: number[]): ArrayBuffer {
   const text = JSON.stringify(header);
   const padded = new TextEncoder().encode(text.padEnd(4 * Math.ceil(text.length / 4)));
-  const [size, poses] = [Uint32Array.of(padded.length), Int16Array.from(units)];
-  const parts = [size, padded, poses, Int8Array.from(levels)].map((one) => [...new Uint8Array(one.buffer)]);
+  const numbers = [Float32Array.from(middles), Int16Array.from(units), Int8Array.from(levels)];
+  const parts = [Uint32Array.of(padded.length), padded, ...numbers].map((one) => [
+    ...new Uint8Array(one.buffer),
+  ]);
   return Uint8Array.from(parts.flat()).buffer;
 }
 
 describe("a motion", () => {
   // Two squares along x, at the start and at the end.
   const { header, positions, vorticity } = decodeMotion(
-    bytesOf(HEADER, [-20, 0, 0, 2, 40, -4], [100, -100, 0, 0]),
+    bytesOf(HEADER, [0, 20, 10, 20, 30, 20], [0, 0, 0, 2, 0, -4], [100, -100, 0, 0]),
   );
 
   it("holds places in cells", () => {

@@ -11,7 +11,6 @@ type Header = Pick<
   /** Moments of the fluid, evenly from the first to the last frame; cells of a square. */
   moments: number;
   square: number;
-  origin: [number, number];
   /** Cells of one unit of a pose. */
   scale: number;
 };
@@ -19,9 +18,9 @@ type Header = Pick<
 /** A replay of its motion: the vorticity of other moments and cells is interpolated. */
 export function decodeMotion(buffer: ArrayBuffer): Replay {
   const { header, start } = readHeader<Header>(buffer, "motion", "microcosmos-motion/1");
-  const { frames, nodes, moments } = header;
-  const positions = decodePlaces(buffer, start, frames * nodes, header);
-  const fluid = new Int8Array(buffer, start + 2 * positions.length);
+  const { frames, moments } = header;
+  const { places: positions, end } = decodePlaces(buffer, start, header);
+  const fluid = new Int8Array(buffer, end);
   const cells = header.size[0] * header.size[1];
   const vorticity = new Int8Array(frames * cells);
   for (let frame = 0; frame < frames; frame++) {

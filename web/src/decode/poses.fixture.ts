@@ -9,7 +9,6 @@ export const header = {
   nodes: 2,
   moments: 3,
   edges: [edge],
-  origin: [10, 20] as [number, number],
   size: [24, 16],
   start: 40,
   stop: 60,
@@ -19,15 +18,16 @@ export const header = {
   length: 2,
 };
 
-/** Units of `scale` cells from `origin`. */
+/** Units of `scale` cells from the middle of each frame. */
 const units = [-2, 0, 2, 0, -2, 4, 2, -32767];
-export const cells = [9, 20, 11, 20, 9, 22, 11, -16363.5];
+const middles = [10, 20, 50_010, 20];
+export const cells = [9, 20, 11, 20, 50_009, 22, 50_011, -16363.5];
 export const path = [10, 20, 11, 20, 12, 20];
 
 export function poseBytes(head: object = header): ArrayBuffer {
   const text = new TextEncoder().encode(JSON.stringify(head).padEnd(280));
   const length = new Uint8Array(Uint32Array.of(text.length).buffer);
-  const arrays = [Float32Array.from(path), Int16Array.from(units)].map(
+  const arrays = [Float32Array.from([...path, ...middles]), Int16Array.from(units)].map(
     ({ buffer }) => new Uint8Array(buffer),
   );
   return Uint8Array.of(...length, ...text, ...arrays[0]!, ...arrays[1]!).buffer;

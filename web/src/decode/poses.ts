@@ -10,7 +10,6 @@ interface Header {
   /** The number of places in the path. */
   moments: number;
   edges: [number, number][];
-  origin: [number, number];
   /** Cells of one unit. */
   scale: number;
   /** The length of the body at rest, in cells. */
@@ -36,12 +35,12 @@ export function decodePoses(buffer: ArrayBuffer): PoseStream {
   const { header, start } = readHeader<Header>(buffer, "pose stream", "microcosmos-poses/1");
   const { frames, nodes, moments } = header;
   const first = start + 8 * moments;
-  const needed = first + 4 * frames * nodes;
+  const needed = first + 8 * frames + 4 * frames * nodes;
   if (needed !== buffer.byteLength) {
     throw new Error(`pose stream: needs ${needed} bytes, got ${buffer.byteLength}`);
   }
-  const positions = decodePlaces(buffer, first, frames * nodes, header);
-  return { header, path: floatsAt(buffer, start, 2 * moments), positions };
+  const { places } = decodePlaces(buffer, first, header);
+  return { header, path: floatsAt(buffer, start, 2 * moments), positions: places };
 }
 
 /** The streams of a batch, each after its length. */

@@ -2,7 +2,7 @@
 
 import type { EvaluationInputs, Goal, Simulation } from "../decode/evaluation";
 import { Kernel } from "./kernel";
-import { simulated } from "./simulation";
+import { type Named, simulated } from "./simulation";
 
 export interface Evaluated {
   /** Measures, and `fitness` unless a plug-in measures it. */
@@ -48,8 +48,8 @@ function figuresOf(kernel: Kernel, inputs: EvaluationInputs, one: Simulation): F
   );
   const values = found("measures");
   const measures = Object.fromEntries(inputs.measures.map((name, k) => [name, values[k]!]));
-  const path = () => kernel.read(observed.get("centre")!);
-  const cycle = inputs.cycle === null ? {} : lastCycle(path(), found("places"), inputs.cycle);
+  const cycle =
+    inputs.cycle === null ? {} : lastCycle(routeOf(kernel, inputs, observed), found("places"), inputs.cycle);
   const [crossing] = kernel.read(crossed!);
   return withFitness(inputs, { ...measures, ...one.constant, ...cycle, crossing: crossing! });
 }
@@ -105,15 +105,36 @@ export function fitnessOf(goal: Goal | null, measures: Figures): number | null {
   return goal.displacement === 0 ? collected : fround(moved + collected);
 }
 
+/** The centre (step, 2) of the body after each step from the corner of its box, and the way to that corner. */
+export interface Route {
+  centre: Float32Array;
+  /** From the corner of the box at the start, in cells. */
+  cells: Float32Array;
+}
+
+function routeOf(kernel: Kernel, { numbers }: EvaluationInputs, observed: Named): Route {
+  const { height, width, bodies } = numbers.rollout;
+  const [begun, box] = ["boxes", "box"].map((name) => kernel.read(observed.get(name)!));
+  const centre = kernel.read(observed.get("centre")!);
+  const cells = centre.map((_, i) => {
+    const axis = i % 2;
+    return (box![2 * bodies! * ((i - axis) / 2) + axis]! - begun![axis]!) * (axis === 0 ? height! : width!);
+  });
+  return { centre, cells };
+}
+
 /**
- * The displacement of a body in its last cycle of some steps.
- *
- * `path` holds the places (step, 2) of its centre, and `start` begins with that at the start.
+ * The displacement of a body in its last cycle of some steps; `start` begins with its place at the start.
  */
-export function lastCycle(path: Float32Array, start: Float32Array, steps: number): Figures {
-  const end = path.length - 2;
+export function lastCycle({ centre, cells }: Route, start: Float32Array, steps: number): Figures {
+  const end = centre.length - 2;
   const from = end - 2 * steps;
-  const moved = (axis: number) => fround(path[end + axis]! - (from < 0 ? start[axis]! : path[from + axis]!));
+  const moved = (axis: number) => {
+    const [now, passed] = [centre[end + axis]!, cells[end + axis]!];
+    if (from < 0) return fround(fround(now + passed) - start[axis]!);
+    const [before, gone] = [centre[from + axis]!, cells[from + axis]!];
+    return fround(fround(now - before) + fround(passed - gone));
+  };
   return { cycle_x: moved(0), cycle_y: moved(1) };
 }
 

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { type Swimmer, diagonal, joined } from "./swimmer";
+import { type Swimmer, joined, together } from "./swimmer";
 
 /** A filament of some nodes. */
 function filament(nodes: number, numbers: Record<string, number> = {}): Swimmer {
@@ -13,6 +13,7 @@ function filament(nodes: number, numbers: Record<string, number> = {}): Swimmer 
     arrays: new Map<string, Float32Array | Int32Array>([
       ["positions", floats(2 * nodes)],
       ["angles", floats(edges)],
+      ["boxes", Float32Array.of(nodes, -nodes)],
       ["edges", pair(edges)],
       ["joints", pair(joints)],
       ["member", new Int32Array(nodes)],
@@ -22,11 +23,11 @@ function filament(nodes: number, numbers: Record<string, number> = {}): Swimmer 
       ["layout rest angles", floats(joints)],
       ["colours of edges", new Int32Array(0)],
       ["colours of joints", new Int32Array(0)],
+      ["whole turns", new Float32Array(0)],
       ["stretch", floats(edges)],
       ["shear", floats(edges)],
       ["bend", floats(joints)],
-      ["turned", new Float32Array(edges * joints).fill(nodes)],
-      ["placed", new Float32Array(nodes * edges).fill(nodes)],
+      ["bends", new Int32Array(joints).fill(1)],
       ["collected", new Float32Array(0)],
       ["parameters", Float32Array.of(nodes)],
     ]),
@@ -52,14 +53,15 @@ describe("creatures in one water", () => {
     expect([...arrays.get("member")!]).toEqual([0, 0, 0, 0, 1, 1, 1]);
     expect([...arrays.get("piece")!]).toEqual([0, 0, 0, 0, 4, 4, 4]);
     expect(arrays.get("positions")!.length).toBe(14);
+    expect([...arrays.get("boxes")!]).toEqual([4, -4, 3, -3]);
   });
 
-  it("turn and place no edge of another", () => {
-    expect(diagonal([block([1, 2], 1, 2), block([3, 4], 2, 1)])).toEqual(
-      Float32Array.of(1, 2, 0, 0, 0, 3, 0, 0, 4),
-    );
-    expect(arrays.get("turned")!.length).toBe(5 * 3);
-    expect(arrays.get("placed")!.length).toBe(7 * 5);
+  it("of a school stay together in another box", () => {
+    const school = filament(4, { bodies: 2, height: 64, width: 48 });
+    school.arrays.set("positions", Float32Array.of(1, 2, 3, 4, 5, 6, 7, 8));
+    school.arrays.set("member", Int32Array.of(0, 0, 1, 1));
+    school.arrays.set("boxes", Float32Array.of(5, 5, 6, 4));
+    expect([...together(school)]).toEqual([1, 2, 3, 4, 69, -42, 71, -40]);
   });
 
   it("may have no joint", () => {
@@ -70,18 +72,11 @@ describe("creatures in one water", () => {
     ]) {
       const found = joined(swimmers);
       expect(found.numbers).toMatchObject({ nodes: 6, edges: 4, joints: 2 });
-      expect(found.arrays.get("turned")!.length).toBe(4 * 2);
-      expect(found.arrays.get("placed")!.length).toBe(6 * 4);
+      expect(found.arrays.get("bends")!.length).toBe(2);
     }
   });
 
   it("take their rest shapes in one way", () => {
     expect(() => joined([filament(4), filament(4, { matched: 0 })])).toThrow("in another way");
   });
-});
-
-const block = (values: number[], rows: number, columns: number) => ({
-  values: Float32Array.from(values),
-  rows,
-  columns,
 });

@@ -36,7 +36,12 @@ describe("figures over trials", () => {
 });
 
 describe("the last cycle", () => {
-  const [path, start] = [Float32Array.of(1, 2, 3, 5, 7, 1), Float32Array.of(0.5, 0.5)];
+  const start = Float32Array.of(0.5, 0.5);
+  const within = (...centre: number[]) => ({
+    centre: Float32Array.from(centre),
+    cells: new Float32Array(centre.length),
+  });
+  const path = within(1, 2, 3, 5, 7, 1);
 
   it("ends with the simulation, and may be all of it", () => {
     expect(lastCycle(path, start, 2)).toEqual({ cycle_x: 6, cycle_y: -1 });
@@ -44,8 +49,18 @@ describe("the last cycle", () => {
   });
 
   it("is in single precision", () => {
-    const far = Float32Array.of(0.1, 0, 60.3, 0);
+    const far = within(0.1, 0, 60.3, 0);
     expect(lastCycle(far, start, 1).cycle_x).toBe(fround(fround(60.3) - fround(0.1)));
+  });
+
+  it("may lead into other boxes, however far", () => {
+    const route = {
+      centre: Float32Array.of(63.5, 1, 0.25, 1),
+      cells: Float32Array.of(64e6, 0, 64e6 + 64, -64),
+    };
+    expect(lastCycle(route, start, 1)).toEqual({ cycle_x: 0.75, cycle_y: -64 });
+    const once = { ...route, cells: Float32Array.of(0, 0, 64, -64) };
+    expect(lastCycle(once, start, 2)).toEqual({ cycle_x: 63.75, cycle_y: -63.5 });
   });
 });
 
@@ -164,7 +179,10 @@ describe("the kernel", () => {
       ["positions", one.put(Float32Array.of(3, 4, 4, 4))],
       ["angles", zeros(1)],
       ["edges", one.put(Int32Array.of(0, 1))],
+      ["member", one.put(Int32Array.of(0, 0))],
       ["present", one.put(Int32Array.of(1, 1))],
+      ["boxes", one.put(Float32Array.of(1e6, -1e6))],
+      ["box", one.put(Float32Array.of(1e6, 1 - 1e6))], // It has left its box, which is 8 cells wide.
       ["rest lengths", one.put(Float32Array.of(1))],
       ["centre", one.put(Float32Array.of(3.5, 4.25))],
       ["path", one.put(Float32Array.of(3, 4.25, 4, 4.25))],
@@ -184,7 +202,7 @@ describe("the kernel", () => {
       );
     const found = measured();
     const [displacement] = one.read(found.find(({ name }) => name === "measures")!);
-    expect(displacement).toBe(0.25);
+    expect(displacement).toBe(8.25);
     // Results that were shorter at the last call have the room of those before.
     expect(measured(found.map((area) => ({ ...area, items: 1 })))).toEqual(found);
   });

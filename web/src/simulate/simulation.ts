@@ -6,7 +6,7 @@ import type { Area, Kernel, Results } from "./kernel";
 /** Operands of the forces on the water besides those of bodies, and of walls. */
 export const FORCES = ["uniform force", "forces across rows", "forces along rows", "walls"];
 /** Operands of a summary that are those of its rollout; all others are results. */
-const OF_START = ["positions", "angles", "edges", "joints", "present", ...FORCES];
+const OF_START = ["positions", "angles", "boxes", "edges", "joints", "member", "present", ...FORCES];
 export const PLANE = "a plane";
 const REST = ["rest angles", "rest lengths"];
 const CLOCK = "clock";

@@ -1,7 +1,18 @@
 /** Creatures that swim on after their evaluation, in water that visitors change. */
 
 import type { EvaluationInputs } from "../decode/evaluation";
-import { type Rest, type Swimmer, joined, REST, STATE, swimmerOf, within, writeRest } from "./swimmer";
+import {
+  type Rest,
+  type Swimmer,
+  fromFirstBox,
+  joined,
+  REST,
+  STATE,
+  swimmerOf,
+  together,
+  within,
+  writeRest,
+} from "./swimmer";
 import { type Area, Kernel, type Results } from "./kernel";
 import { FORCES, GIVEN, type Named, PLANE } from "./simulation";
 import { text } from "./text";
@@ -21,7 +32,7 @@ import {
 
 /** The present state, as a replay of one frame holds it. */
 export interface Frame {
-  /** Positions (node, 2) of the nodes that have grown, in cells. */
+  /** Positions (node, 2) of the nodes that have grown, in cells, from the box of the first body. */
   positions: Float32Array;
   /** Pairs of these nodes. */
   edges: [number, number][];
@@ -86,7 +97,7 @@ export class Swim {
   join(inputs: EvaluationInputs): void {
     const other = swimmerOf(this.module, inputs);
     joined([...this.swimmers, other]); // Whether it fits, before anything changes.
-    const positions = other.arrays.get("positions") as Float32Array;
+    const positions = together(other);
     const present = other.arrays.get("present")!;
     const grown = positions.filter((_, i) => present[Math.floor(i / 2)]);
     if (!grown.every(Number.isFinite)) throw new Error(text.diverged);
@@ -100,6 +111,11 @@ export class Swim {
     other.arrays.set(
       "positions",
       positions.map((at, i) => at + place[i % 2]! - mean[i % 2]!),
+    );
+    const boxes = this.boxes();
+    other.arrays.set(
+      "boxes",
+      (other.arrays.get("boxes") as Float32Array).map((_, i) => boxes[i % 2]!),
     );
     const planes = this.planes().map((plane) => plane.slice());
     this.keep();
@@ -176,6 +192,7 @@ export class Swim {
     for (const [name, counted, each] of [
       ["positions", "nodes", 2],
       ["angles", "edges", 1],
+      ["boxes", "bodies", 2],
       ["collected", "nodes", 1],
     ] as const) {
       const all = this.kernel.read(this.state.find((result) => result.name === name)!);
@@ -233,9 +250,17 @@ export class Swim {
     return this.grown.filter((node) => node < this.swimmers[0]!.numbers.nodes!).length;
   }
 
+  /** Positions of grown nodes, from the corner of the first body's box. */
   private positions(): Float32Array {
     const all = this.kernel.view(this.state[POSITIONS]!);
-    return Float32Array.from(this.grown.flatMap((node) => [all[2 * node]!, all[2 * node + 1]!]));
+    const member = this.kernel.readIntegers(this.operands.get("member")!);
+    const places = fromFirstBox(all, this.boxes(), member, this.stage.size);
+    return Float32Array.from(this.grown.flatMap((node) => [places[2 * node]!, places[2 * node + 1]!]));
+  }
+
+  /** Whole boxes (body, 2) that bodies have passed. */
+  private boxes(): Float32Array {
+    return this.kernel.view(this.state.find(({ name }) => name === "boxes")!);
   }
 
   private planes(): Plane[] {

@@ -14,14 +14,15 @@ const INTEGERS = new Set([
   "member",
   "piece",
   "present",
+  "bends",
   "colours of edges",
   "colours of joints",
   "walls",
 ]);
 /** The state: operands that a rollout changes and returns. */
-export const STATE = ["positions", "angles", "energy", "collected"];
+export const STATE = ["positions", "angles", "boxes", "energy", "collected"];
 /** Figures of the window of the last strokes, in the results of a summary. */
-const WINDOW = { start: 3, stop: 4, strokes: 5 };
+const WINDOW = { start: 1, stop: 2, strokes: 3 };
 
 export interface Swimmer {
   /** Numbers of its rollout. */
@@ -65,6 +66,26 @@ export function swimmerOf(module: WebAssembly.Module, inputs: EvaluationInputs):
   };
 }
 
+/** Positions (node, 2) from the corner of the first body's box; those of each body count from its own. */
+export function fromFirstBox(
+  positions: Float32Array,
+  boxes: ArrayLike<number>,
+  member: ArrayLike<number>,
+  size: ArrayLike<number>,
+): Float32Array {
+  return positions.map((at, i) => {
+    const axis = i % 2;
+    return at + (boxes[2 * member[(i - axis) / 2]! + axis]! - boxes[axis]!) * size[axis]!;
+  });
+}
+
+/** The positions of a swimmer's nodes in its own water, from the corner of its first body's box. */
+export function together({ arrays, numbers }: Swimmer): Float32Array {
+  const [boxes, member] = [arrays.get("boxes")!, arrays.get("member")!];
+  const positions = arrays.get("positions") as Float32Array;
+  return fromFirstBox(positions, boxes, member, [numbers.height!, numbers.width!]);
+}
+
 /** A step of the window of its last strokes. */
 export function within({ window: { start, stop } }: Swimmer, step: number): number {
   return step < stop ? step : start + ((step - start) % (stop - start));
@@ -94,6 +115,7 @@ const SHARED = ["matched", "laid_out", "soft"];
 const JOINED: Record<string, Counted | null> = {
   positions: null,
   angles: null,
+  boxes: null,
   edges: "nodes",
   joints: "edges",
   member: "bodies",
@@ -101,18 +123,14 @@ const JOINED: Record<string, Counted | null> = {
   present: null,
   "layout angles": null,
   "layout rest angles": null,
+  bends: null,
   "colours of edges": null,
   "colours of joints": null,
+  "whole turns": null,
   stretch: null,
   shear: null,
   bend: null,
 };
-/** Operands with a block for each creature, and what their rows and columns are. */
-const BLOCKS: Record<string, [Counted, Counted]> = {
-  turned: ["edges", "joints"],
-  placed: ["nodes", "edges"],
-};
-
 interface Joined {
   numbers: Record<string, number>;
   arrays: Map<string, Items>;
@@ -142,14 +160,6 @@ export function joined(swimmers: Swimmer[]): Joined {
   if (first.arrays.get("collected")!.length > 0) {
     arrays.set("collected", new Float32Array(numbers.nodes!));
   }
-  for (const [name, [rows, columns]] of Object.entries(BLOCKS)) {
-    const blocks = swimmers.map(({ arrays, numbers }) => ({
-      values: arrays.get(name)!,
-      rows: numbers.laid_out ? numbers[rows]! : 0,
-      columns: numbers[columns]!,
-    }));
-    arrays.set(name, diagonal(blocks));
-  }
   return { numbers, arrays };
 }
 
@@ -161,27 +171,6 @@ function chained(parts: Items[]): Items {
   for (const part of parts) {
     found.set(part, at);
     at += part.length;
-  }
-  return found;
-}
-
-interface Block {
-  values: Items;
-  rows: number;
-  columns: number;
-}
-
-/** The matrix of blocks along its diagonal. */
-export function diagonal(blocks: Block[]): Float32Array {
-  const total = (side: "rows" | "columns") => blocks.reduce((all, block) => all + block[side], 0);
-  const width = total("columns");
-  const found = new Float32Array(total("rows") * width);
-  let [row, column] = [0, 0];
-  for (const { values, rows, columns } of blocks) {
-    for (let i = 0; i < rows; i++) {
-      found.set(values.subarray(i * columns, (i + 1) * columns), (row + i) * width + column);
-    }
-    [row, column] = [row + rows, column + columns];
   }
   return found;
 }

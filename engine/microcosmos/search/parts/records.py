@@ -383,7 +383,7 @@ def pose_stream(text: str, seen: Poses, creature: str) -> PoseStream:
     return PoseStream(
         positions=np.asarray(seen.positions)[:, present],
         path=np.asarray(seen.path),
-        origin=(float(seen.origin[0]), float(seen.origin[1])),
+        middles=np.asarray(seen.middles),
         scale=float(seen.scale),
         edges=(np.cumsum(present) - 1)[edges].astype(np.int32),
         start=int(last.start),

@@ -7,7 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from ... import search, spec
+from ... import search, spec, world
 from ...archive import file
 from ...build import build_descent
 from ...device import compiler_options
@@ -58,7 +58,7 @@ def _courses(chosen: spec.Folding, genes: np.ndarray) -> np.ndarray:
 
     def course(genes):
         driven = search.drive(descent.task, Vector(genes))
-        _, seen = search.simulate(driven, lambda state, measures: state.positions)
+        _, seen = search.simulate(driven, lambda state, _: world.unwrapped(driven.world, state))
         return seen[np.array(steps)]
 
     program = jax.jit(partial(jax.lax.map, course), compiler_options=compiler_options())

@@ -33,6 +33,18 @@ def _bases(plan: Plan, position: Pair) -> tuple[Pair, Pair]:
     return tuple(inside), tuple(bases)
 
 
+def within_box(plan: Plan, position: Pair, anchor) -> tuple[Pair, Pair]:
+    """Return positions from the corner of the box that holds the anchor, and how many whole
+    boxes that is from the corner before.
+    """
+    inside, boxes = [], []
+    for x, cells in zip(position, plan.size, strict=True):
+        whole = jnp.floor(jnp.sum(jnp.where(anchor > 0, x, 0.0)) / cells)
+        inside.append(x - cells * whole)
+        boxes.append(whole)
+    return tuple(inside), tuple(boxes)
+
+
 def interpolate(plan: Plan, f: Ref, window: Ref, odd, position: Pair, mask) -> Pair:
     """Return the velocity of the fluid at the nodes.
 

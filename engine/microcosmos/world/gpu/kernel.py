@@ -15,7 +15,17 @@ from jax.experimental.pallas import triton
 from jaxtyping import Array
 
 from ... import fluid
-from .bodies import ROW, clear, fitted, forced, interpolate, limited, spread, tabulate
+from .bodies import (
+    ROW,
+    clear,
+    fitted,
+    forced,
+    interpolate,
+    limited,
+    spread,
+    tabulate,
+    within_box,
+)
 from .lattice import flow, prepare, restored, wait
 from .plan import Pair, Plan, Ref, added, difference, divided, repeat
 
@@ -23,15 +33,17 @@ WARPS = 4
 """Groups of 32 threads in a program."""
 RATES = ("even", "odd", "displacement", "force")
 """Relaxation rates and limits, in the order of the operand."""
-OBSERVED = ("speed", "node_speed", "held", "power", "force_x", "force_y")
-"""Numbers that a step returns beside positions."""
+OBSERVED = ("speed", "node_speed", "held", "power", "force_x", "force_y", "box_x", "box_y")
+"""Numbers that a step returns beside positions; the last are the boxes that the body changed
+by."""
 
 
 def rollout(plan: Plan, operands: Sequence[Array]) -> list[Array]:
     """Return populations, positions, positions before the limit, and numbers of each step.
 
-    Operands are the populations, positions (axis, node), 1 for present nodes, rest shapes
-    (time, axis, node), and `RATES`. Results but the populations have time first.
+    Operands are the populations, positions (axis, node), 1 for present nodes, 1 for the
+    anchor, rest shapes (time, axis, node), and `RATES`. Results but the populations have time
+    first.
     """
     shapes = [
         (9 * plan.cells,),
@@ -55,11 +67,11 @@ def rollout(plan: Plan, operands: Sequence[Array]) -> list[Array]:
 
 
 def _rollout(
-    plan: Plan, start, placed, present, shapes, numbers, f, force, window, tables, *out
+    plan: Plan, start, placed, present, anchor, shapes, numbers, f, force, window, tables, *out
 ):
     """Carry one world through all steps; arguments after the plan are memory."""
     rates = fluid.Rates(numbers[0], numbers[1])
-    mask = present[:]
+    mask, chosen = present[:], anchor[:]
     count = jnp.sum(mask)
     prepare(plan, start, f, force)
 
@@ -81,11 +93,12 @@ def _rollout(
         clear(plan, force, position)
         wait(plan)
         position = added(position, (mask * target[0], mask * target[1]))
+        position, boxes = within_box(plan, position, chosen)
         held = jnp.where(scale < 1, mask, held)
         power = forcing[0] * target[0] + forcing[1] * target[1]
         means = jnp.sum(mask * speed) / count, jnp.sum(mask * held) / count
         pushed = jnp.sum(power), jnp.sum(forcing[0]), jnp.sum(forcing[1])
-        _record(out, time, position, matched, (fastest, *means, *pushed))
+        _record(out, time, position, matched, (fastest, *means, *pushed, *boxes))
         return position
 
     repeat(plan.steps, step, (placed[0, :], placed[1, :]))

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from ... import coupling, device, filaments, fluid
-from ..model import Measures, State, World, grown_nodes, mean, present_edges
+from ..model import Measures, State, World, anchors, grown_nodes, mean, present_edges
 from ..stepping import curvature
 from .plan import Plan
 
@@ -57,13 +57,22 @@ def rollout(
     numbers = dict(zip(kernel.OBSERVED, motion[2].T, strict=True))
     # Angles are those of the positions before the limit, as `stepping` leaves them.
     angles = _followed(state.angles, matched, world.rods)
-    end = replace(state, populations=tuple(populations), positions=path[-1], angles=angles[-1])
     force = jnp.stack([numbers.pop("force_x"), numbers.pop("force_y")], 1)[:, None]
+    changes = jnp.stack([numbers.pop("box_x"), numbers.pop("box_y")], 1)[:, None]
+    boxes = state.boxes[None] + jnp.cumsum(changes, 0)
+    end = replace(
+        state,
+        populations=tuple(populations),
+        positions=path[-1],
+        angles=angles[-1],
+        boxes=boxes[-1],
+    )
 
-    def measure(positions, angles, rest, force, numbers):
+    def measure(positions, angles, boxes, rest, force, numbers):
         return Measures(
             centre=mean(positions, world.present),
             positions=positions,
+            boxes=boxes,
             rest=rest,
             heading=mean(angles, present_edges(world)),
             curvature=curvature(world, positions, angles),
@@ -71,7 +80,7 @@ def rollout(
             **numbers,
         )
 
-    return end, jax.vmap(measure)(path, angles, rest, force, numbers)
+    return end, jax.vmap(measure)(path, angles, boxes, rest, force, numbers)
 
 
 def plan_of(world: World, state: State, rest: filaments.Rest, interpreted: bool) -> Plan:
@@ -108,6 +117,7 @@ def operands_of(plan: Plan, world: World, state: State, rest: filaments.Rest) ->
         jnp.stack(state.populations).reshape(-1),
         positions,
         jnp.pad(grown_nodes(world).astype(dtype), (0, filled)),
+        (jnp.arange(plan.nodes) == anchors(world)).astype(dtype),
         jnp.pad(shapes, ((0, 0), (0, 0), (0, filled))),
         jnp.stack([jnp.asarray(one, dtype) for one in values]),
     ]

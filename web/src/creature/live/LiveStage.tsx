@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { type Replay, motionOnly } from "../../decode/replay";
 import { CanvasStage } from "../../replay/CanvasStage";
 import { type FieldName, FluidPainter, fieldOf } from "../../replay/fields";
-import { BODY_INK } from "../../replay/motion";
+import { BODY_INK, wrap } from "../../replay/motion";
 import { drawScene, sceneOf } from "../../replay/scene";
 import { Live } from "../../simulate/simulator";
 import type { Frame, Stage } from "../../simulate/swim";
@@ -145,10 +145,12 @@ class Dye implements Particles {
   /** Drift for some steps with the water of the next state. */
   drift(replay: Replay, steps: number): void {
     this.replay = replay;
+    const [width, height] = replay.header.size;
     for (let i = 0; i < this.places.length; i += 2) {
       const [u, v] = velocityAt(replay, 0, this.places[i]!, this.places[i + 1]!);
-      this.places[i]! += steps * u;
-      this.places[i + 1]! += steps * v;
+      // Within the box: a float far from it would swallow the steps.
+      this.places[i] = wrap(this.places[i]! + steps * u, width);
+      this.places[i + 1] = wrap(this.places[i + 1]! + steps * v, height);
     }
   }
 }
