@@ -120,6 +120,7 @@ bench: peers web
 	$(BIN)/python engine/benchmarks/accelerator.py
 	$(BIN)/python engine/benchmarks/kernel.py
 	$(BIN)/python engine/benchmarks/budget.py
+	$(BIN)/python engine/benchmarks/crowd.py
 	$(BIN)/python engine/benchmarks/gradients.py
 	$(BIN)/python engine/benchmarks/cma_mega.py
 	$(BIN)/python engine/benchmarks/archive.py

@@ -52,6 +52,7 @@ TINY: dict[str, tuple[str, dict[str, Any]]] = {
     ),
     "cluster": ("--seconds 0.01 --blocks 2 --helpers 1 --preset demo", {}),
     "cma_mega": ("", {"GENERATIONS": 2, "SEEDS": [0]}),
+    "crowd": ("", {"REPEATS": 1, "CROWDS": [[64, 3, 5]]}),
     "fronts": ("--seeds 2 --generations 2 --lengths 4", {}),
     "generation": ("", GENERATION),
     "gradients": ("", {"SIZES": [[32, 8]], "STEPS": 16, "REPEATS": 1, "FOLDING": FOLDING}),
