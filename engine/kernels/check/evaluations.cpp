@@ -82,8 +82,8 @@ struct Evaluation {
     o.clock = clock.data(), o.scales = scales;
     places.assign(2 * PLACES, 0), frames.assign(2 * FRAMES * size_t(r.nodes), 0);
     middles.assign(2 * FRAMES, 0), shown.assign(SHOWN, 0), measures.assign(MEASURE_COUNT, 0);
-    o.places = places.data(), o.frames = frames.data(), o.middles = middles.data(), o.shown = shown.data();
-    o.measures = measures.data();
+    o.places = places.data(), o.frames = frames.data(), o.middles = middles.data();
+    o.shown = shown.data(), o.measures = measures.data();
     ISA::Summary(o).write();
   }
 

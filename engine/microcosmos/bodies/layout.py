@@ -70,10 +70,8 @@ def _inverse(pairs: np.ndarray, count: int) -> np.ndarray:
     piece, found = pieces(pairs, count), np.zeros((count, len(pairs)))
     known: dict[bytes, np.ndarray] = {}  # Equal bodies have the same.
     for number in range(piece.max(initial=-1) + 1):
-        items, own = (
-            np.flatnonzero(piece == number),
-            np.flatnonzero(piece[pairs[:, 0]] == number),
-        )
+        items = np.flatnonzero(piece == number)
+        own = np.flatnonzero(piece[pairs[:, 0]] == number)
         within = np.searchsorted(items, pairs[own])
         name = np.array([len(items), *within.ravel()]).tobytes()
         if name not in known:

@@ -397,7 +397,7 @@ def recorded_motion(
 
     Positions are unwrapped: in cells from the corner of the first box.
     """
-    first = mean(start.angles, present_edges(world))
+    first, begun = mean(start.angles, present_edges(world)), unwrapped(world, start)
     nodes = len(start.positions) // copies
     node = middle_node(nodes, None if world.present is None else world.present[:nodes])
     return Motion(
@@ -407,13 +407,8 @@ def recorded_motion(
         curvature=observed.curvature,
         node_speed=observed.node_speed,
         power=observed.power,
-        middle=jnp.concatenate(
-            [
-                unwrapped(world, start)[node][None],
-                unwrapped(world, observed)[:, node],
-            ]
-        ),
-        start=unwrapped(world, start),
+        middle=jnp.concatenate([begun[node][None], unwrapped(world, observed)[:, node]]),
+        start=begun,
         end=unwrapped(world, end),
         viscosity=world.viscosity,
         measures=measures,
