@@ -83,8 +83,8 @@ class Repulsion {
   }
 
   // Add a displacement that parts bodies which stand in exactly one place: there they push each
-  // other nowhere. Of n such bodies each takes another of n directions, so that the displacements of
-  // equal bodies add up to nothing.
+  // other nowhere. Of n such bodies each takes another of n directions, so that the displacements
+  // of equal bodies add up to nothing.
   void part(int body, Rigid& rigid) const {
     constexpr float TIE = 1e-4f;  // The next steps make it grow.
     const float x = anchor_x_[body], y = anchor_y_[body];
