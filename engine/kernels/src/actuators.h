@@ -11,6 +11,8 @@ struct Rest {
 
 class Actuators {
  public:
+  Rest paced, rest;  // The command after the bound on speed, and the shape after the lag.
+
   Actuators(const Bodies& b, const Rollout& r, const Nodes& n)
       : b_(b), r_(r), here_(n.here), shapes_(b, r, r.actuated) {
     before_x_ = Floats(b.node_slots + BLOCK), before_y_ = Floats(b.node_slots + BLOCK);
@@ -19,7 +21,7 @@ class Actuators {
     for (int e = 0; e < r.edges; e++)
       edge_here_[e] = r.present[r.ends[2 * e]] && r.present[r.ends[2 * e + 1]];
     if (r.actuated) stand();
-    paced_ = rest_ = start_;
+    paced = rest = start_;
   }
 
   // Carry out commands for all steps, in place: the clock slows where they are too fast. `clock`
@@ -57,35 +59,25 @@ class Actuators {
   void closed_loop(float* angle, float* length) {
     if (!r_.actuated) return;
     bound(angle);
+    follow(angle, length, angle, length);
+  }
+
+  // Take a step towards a bounded command: write the rest shape.
+  void follow(const float* angle, const float* length, float* to_angle, float* to_length) {
     float share = 1;
     if (r_.control[MAX_SPEED] > 0) {
-      lay_out_before(paced_.angle.data(), paced_.length.data());
+      lay_out_before(paced.angle.data(), paced.length.data());
       share = r_.control[MAX_SPEED] / fastest(angle, length);
       share = share < 1 ? share : 1;
     }
-    auto follow = [&](float* command, List<float>& paced, List<float>& rest) {
+    auto step = [&](const float* command, List<float>& paced, List<float>& rest, float* to) {
       for (size_t i = 0; i < paced.size(); i++) {
         paced[i] = paced[i] + share * (command[i] - paced[i]);
-        command[i] = rest[i] = rest[i] + r_.control[LAG_SHARE] * (paced[i] - rest[i]);
+        to[i] = rest[i] = rest[i] + r_.control[LAG_SHARE] * (paced[i] - rest[i]);
       }
     };
-    follow(angle, paced_.angle, rest_.angle), follow(length, paced_.length, rest_.length);
-  }
-
- private:
-  // Set the start shape to the rest shape in which the body stands.
-  void stand() {
-    auto at = [&](int node, int axis) { return r_.positions[2 * node + axis]; };
-    for (int j = 0; j < r_.joints; j++) {
-      const float rest = r_.layout_rest_angle[j];
-      const float turn = r_.angles[r_.pairs[2 * j + 1]] - r_.angles[r_.pairs[2 * j]] - rest;
-      start_.angle[j] = rest + wrapped(all(turn))[0];
-    }
-    for (int e = 0; e < r_.edges; e++) {
-      const int one = r_.ends[2 * e], other = r_.ends[2 * e + 1];
-      const float x = at(other, 0) - at(one, 0), y = at(other, 1) - at(one, 1);
-      start_.length[e] = root(x * x + y * y + 1e-24f);
-    }
+    step(angle, paced.angle, rest.angle, to_angle);
+    step(length, paced.length, rest.length, to_length);
   }
 
   // Reduce the bend to the bound: the largest angle added between any two edges.
@@ -114,6 +106,22 @@ class Actuators {
     for (int j = 0; j < r_.joints; j++) {
       const float rest = r_.layout_rest_angle[j];
       angle[j] = rest + share * (angle[j] - rest);
+    }
+  }
+
+ private:
+  // Set the start shape to the rest shape in which the body stands.
+  void stand() {
+    auto at = [&](int node, int axis) { return r_.positions[2 * node + axis]; };
+    for (int j = 0; j < r_.joints; j++) {
+      const float rest = r_.layout_rest_angle[j];
+      const float turn = r_.angles[r_.pairs[2 * j + 1]] - r_.angles[r_.pairs[2 * j]] - rest;
+      start_.angle[j] = rest + wrapped(all(turn))[0];
+    }
+    for (int e = 0; e < r_.edges; e++) {
+      const int one = r_.ends[2 * e], other = r_.ends[2 * e + 1];
+      const float x = at(other, 0) - at(one, 0), y = at(other, 1) - at(one, 1);
+      start_.length[e] = root(x * x + y * y + 1e-24f);
     }
   }
 
@@ -165,7 +173,7 @@ class Actuators {
   const Rollout& r_;
   const float* here_;
   Shapes shapes_;
-  Rest start_, paced_, rest_;
+  Rest start_;
   Floats before_x_, before_y_;
   List<uint8_t> edge_here_;
 };

@@ -50,6 +50,12 @@ class Arrays {
     bind(name, (void**)to, base, ffi::DataType::F32, **buffer);
   }
 
+  void out(const char* name, int32_t** to, const Shape& base) {
+    auto buffer = rets_.get<ffi::AnyBuffer>(results_++);
+    if (buffer.has_error()) return fail(std::string("there is no result ") + name);
+    bind(name, (void**)to, base, ffi::DataType::S32, **buffer);
+  }
+
   void end() {
     if (operands_ != args_.size() || results_ != rets_.size())
       fail("there are " + std::to_string(operands_) + " operands and " + std::to_string(results_) +

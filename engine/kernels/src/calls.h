@@ -5,6 +5,7 @@
 #include <string>
 
 #include "rollout.h"
+#include "slots.h"
 #include "summary.h"
 
 namespace microcosmos {
@@ -29,7 +30,8 @@ std::string read_body(Rollout& r, Numbers number) {
   if ((r.actuated || r.matched) && !r.laid_out) return "there is no layout";
   if (r.timers > 2 || (r.waves && r.timers != 2)) return "a timer has one or two numbers";
   if (r.sites > r.rows) return "a network has an input for each site";
-  const int inputs = r.sites + r.timers * (r.waves ? 2 : 1) + r.senses;
+  if (r.senses < 0 || r.senses > ALL_SENSES) return "there is no such sense";
+  const int inputs = r.sites + r.timers * (r.waves ? 2 : 1) + count_of(r.senses);
   if (r.commands == NETWORK && (r.inputs != inputs || r.rows < inputs + 2))
     return "a network has an input for each that it is given, and two outputs";
   return "";
@@ -64,8 +66,29 @@ std::string read_world(Rollout& r, Numbers number) {
 // Read the numbers of a call; return what is wrong with them, or "".
 template <class Numbers>
 std::string read_rollout(Rollout& r, Numbers number) {
-  const std::string wrong = read_body(r, number);
-  return wrong.empty() ? read_world(r, number) : wrong;
+  std::string wrong = read_body(r, number);
+  if (wrong.empty()) wrong = read_world(r, number);
+  if (wrong.empty() && r.senses & ~SENSED_ENERGY) wrong = "a rollout knows the sense of energy alone";
+  return wrong;
+}
+
+// Read the numbers of a window; return what is wrong with them, or "".
+template <class Numbers>
+std::string read_window(Slots& w, Numbers number) {
+  std::string wrong = read_body(w.r, number);
+  if (wrong.empty()) wrong = read_world(w.r, number);
+  if (!wrong.empty()) return wrong;
+  w.slots = number("slots"), w.every = number("every");
+  if (!number.error.empty()) return number.error;
+  if (w.slots < 1 || w.every < 1) return "there is at least one slot, and a step to a command";
+  if (w.r.commands != NETWORK || w.r.timers != 2 || !w.r.laid_out || w.r.bodies != 1)
+    return "a slot has one body with a layout and a network with a periodic timer";
+  if (w.r.senses && !(w.r.fluid && w.r.energetic)) {
+    const int32_t of_energy = SENSED_ENERGY | SENSED_ENERGY_ACROSS | SENSED_ENERGY_ALONG;
+    if (w.r.senses & of_energy && !w.r.energetic) return "there is no energy to sense";
+    if (w.r.senses & ~of_energy && !w.r.fluid) return "there is no flow to sense";
+  }
+  return "";
 }
 
 template <class Numbers>
@@ -124,6 +147,68 @@ void name_controller(Arrays& a, Rollout& r) {
   a.in("basis", &r.basis, {when(series, T), K}), a.in("genes", &r.genes, {K, when(series, J + E)});
 }
 
+// Name the arrays of what is around bodies.
+template <class Arrays>
+void name_surroundings(Arrays& a, Rollout& r) {
+  const int64_t H = r.height, W = r.width;
+  a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
+  a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
+  a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
+  a.in("forces across rows", &r.force_x, {when(r.varied, H), W});
+  a.in("forces along rows", &r.force_y, {when(r.varied, H), W});
+  a.in("walls", &r.walls, {when(r.walled, H), W});
+  a.in("displacements across rows", &r.away_x, {when(r.barred, H), W});
+  a.in("displacements along rows", &r.away_y, {when(r.barred, H), W});
+  a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});
+  a.in("velocity of the sponge", &r.sponge_velocity, {when(r.damped, 2)});
+}
+
+// Name the arrays of a window: a slot is the first axis of what belongs to one.
+template <class Arrays>
+void name_window(Arrays& a, Slots& w) {
+  Rollout& r = w.r;
+  const int64_t H = r.height, W = r.width, N = r.nodes, E = r.edges, J = r.joints, S = w.slots;
+  const int64_t R = r.rows, L = r.links, swept = when(!r.matched, S);
+  for (int i = 0; i < 9; i++) a.in("a plane", &r.populations[i], {H, W});
+  a.in("positions", &r.positions, {S, N, 2}), a.in("angles", &r.angles, {S, E});
+  a.in("boxes", &r.boxes, {S, 2}), a.in("ages", &w.age, {S});
+  a.in("angles of shapes", &w.shape_angles, {S, SHAPE_COUNT, J});
+  a.in("lengths of shapes", &w.shape_lengths, {S, SHAPE_COUNT, E});
+  a.in("values of networks", &w.values, {when(r.recurrent, S), R, N});
+  a.in("energy", &r.energy, {when(r.energetic, H), W});
+  a.in("collected", &r.collected, {when(r.energetic, S), N});
+  a.in("filled", &w.filled, {S}), a.in("numbers", &w.number, {S});
+  a.in("edges", &r.ends, {S, E, 2}), a.in("joints", &r.pairs, {S, J, 2});
+  a.in("piece", &r.piece, {S, N}), a.in("present", &r.present, {S, N});
+  a.in("layout angles", &r.layout_angle, {S, E});
+  a.in("layout rest angles", &r.layout_rest_angle, {S, J});
+  a.in("bends", &r.bends, {S, J});
+  a.in("colours of edges", &r.edge_colour, {swept, E});
+  a.in("colours of joints", &r.joint_colour, {swept, J});
+  a.in("whole turns", &r.whole, {swept, J});
+  a.in("stretch", &r.stretch, {S, E}), a.in("shear", &r.shear, {S, E});
+  a.in("bend", &r.bend, {S, J}), a.in("means", &w.means, {S, MEAN_COUNT});
+  a.in("activations", &r.activation, {S, R}), a.in("biases", &r.bias, {S, R});
+  a.in("sources", &r.source, {S, L}), a.in("targets", &r.target, {S, L});
+  a.in("weights", &r.weight, {S, L}), a.in("sites", &r.site, {S, r.sites, N});
+  a.in("lags", &r.lag, {when(r.waves, S), N});
+  a.in("nodes of joints", &r.joint_node, {S, J}), a.in("gains of joints", &r.gain, {S, J});
+  a.in("rest lengths of bodies", &r.body_length, {S, E});
+  a.in("parameters", &r.parameters, {STEP_LENGTHS + r.iterations});
+  name_surroundings(a, r);
+  for (int i = 0; i < 9; i++) a.out("a plane", &r.end_populations[i], {H, W});
+  a.out("positions", &r.end_positions, {S, N, 2}), a.out("angles", &r.end_angles, {S, E});
+  a.out("boxes", &r.end_boxes, {S, 2}), a.out("ages", &w.end_age, {S});
+  a.out("angles of shapes", &w.end_shape_angles, {S, SHAPE_COUNT, J});
+  a.out("lengths of shapes", &w.end_shape_lengths, {S, SHAPE_COUNT, E});
+  a.out("values of networks", &w.end_values, {when(r.recurrent, S), R, N});
+  a.out("energy", &r.end_energy, {when(r.energetic, H), W});
+  a.out("collected", &r.end_collected, {when(r.energetic, S), N});
+  a.out("measures", &w.tally, {S, TALLY_COUNT});
+  a.out("seconds", &r.seconds, {PART_COUNT}), a.out("memory", &r.memory, {1});
+  a.end();
+}
+
 // Name the arrays of a rollout.
 template <class Arrays>
 void name_rollout(Arrays& a, Rollout& r) {
@@ -141,16 +226,7 @@ void name_rollout(Arrays& a, Rollout& r) {
   a.in("boxes", &r.boxes, {B, 2});
   a.in("energy", &r.energy, {when(energetic, H), W});
   a.in("collected", &r.collected, {when(energetic, N)});
-  a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
-  a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
-  a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
-  a.in("forces across rows", &r.force_x, {when(r.varied, H), W});
-  a.in("forces along rows", &r.force_y, {when(r.varied, H), W});
-  a.in("walls", &r.walls, {when(r.walled, H), W});
-  a.in("displacements across rows", &r.away_x, {when(r.barred, H), W});
-  a.in("displacements along rows", &r.away_y, {when(r.barred, H), W});
-  a.in("strength of the sponge", &r.sponge, {when(r.damped, H), W});
-  a.in("velocity of the sponge", &r.sponge_velocity, {when(r.damped, 2)});
+  name_surroundings(a, r);
   a.in("rest angles", &r.given_angle, {given, J});
   a.in("rest lengths", &r.given_length, {given, E});
   name_controller(a, r);
@@ -229,6 +305,25 @@ inline bool sound(const Rollout& r) {
          within(r.pairs, 2 * r.joints, 0, r.edges) && within(r.member, r.nodes, 0, r.bodies) &&
          within(r.piece, r.nodes, 0, r.nodes) && within(r.present, r.nodes, 0, 2) &&
          within(r.bends, r.laid_out ? r.joints : 0, 0, 2);
+}
+
+inline bool sound(const Slots& w) {
+  bool good = within(w.filled, w.slots, 0, 2) && within(w.age, w.slots, 0, int64_t(1) << 31);
+  for (int64_t s = 0; good && s < w.slots; s++) {
+    if (!w.filled[s]) continue;
+    Rollout r = w.r;
+    const int64_t N = r.nodes, E = r.edges, J = r.joints, R = r.rows, L = r.links;
+    r.ends += 2 * s * E, r.pairs += 2 * s * J, r.piece += s * N, r.present += s * N;
+    r.bends += s * J, r.activation += s * R, r.source += s * L, r.target += s * L;
+    r.joint_node += s * J, r.edge_colour += r.matched ? 0 : s * E;
+    r.joint_colour += r.matched ? 0 : s * J;
+    const std::vector<int32_t> member(N, 0);
+    r.member = member.data();
+    good = sound(r);
+    // A joint that is kept turns by the output at a node that has grown.
+    for (int64_t j = 0; good && j < J; j++) good = !r.bends[j] || r.present[r.joint_node[j]];
+  }
+  return good;
 }
 
 inline bool sound(const Observed& o) {

@@ -11,7 +11,7 @@ class Controller {
     nodes_ = r.nodes;
     // In open loop several times are evaluated at once; points fill whole blocks.
     const bool stepwise = r.recurrent || r.senses;
-    times_ = stepwise ? 1 : std::max(1, 512 / nodes_);
+    times_ = stepwise ? 1 : std::max(1, 512 / std::max(nodes_, 1));
     const int points = (times_ * nodes_ + BLOCK - 1) / BLOCK * BLOCK;
     if (r.commands == NETWORK) network_.place(points);
     turned_ = Floats(points), stretched_ = Floats(points);
@@ -28,7 +28,7 @@ class Controller {
   }
 
   // Command the rest shapes of the steps from `first` on, (step, joint) and (step, edge);
-  // `sensed` is the energy at each node, of one step, for a controller that senses.
+  // `sensed` is what each node senses in one step, (sense, node), for a controller that senses.
   void command(int first, int count, const float* sensed, float* angle, float* length) {
     for (int step = 0; step < count; step += times_) {
       const int part = std::min(times_, count - step);
@@ -42,6 +42,9 @@ class Controller {
         add_up(first + step, part, to_angle, to_length);
     }
   }
+
+  // The value of a row of a recurrent network at a node.
+  float& value(int row, int node) { return network_.row(row)[node]; }
 
  private:
   // Put the inputs of `count` times into the network, the node varying fastest.
@@ -69,7 +72,8 @@ class Controller {
           c[n] = timer[1] * wave_[nodes_ + n] + timer[0] * wave_[n];
         }
       }
-      if (r_.senses) std::memcpy(network_.row(input++) + at, sensed, 4 * size_t(nodes_));
+      for (int k = 0; k < count_of(r_.senses); k++)
+        std::memcpy(network_.row(input++) + at, sensed + size_t(k) * nodes_, 4 * size_t(nodes_));
     }
   }
 

@@ -1,5 +1,6 @@
 // Energy that nodes sense and collect, as in `world.nodes` and `fields.energy`.
 #pragma once
+#include "density.h"
 #include "points.h"
 
 namespace microcosmos::ISA {
@@ -53,6 +54,25 @@ class Energy {
       me.wait();  // Every member goes on with the new one.
     }
     if (consumed || spreads) continue_rows(l, band);
+  }
+
+  // The energy at a node whose windows are those of its points.
+  float near(const Points& p, const Lattice& l, int slot) const {
+    float sum = 0;
+    for (int layer = 0; layer < r_.layers; layer++)
+      sum += at(p.window(layer * b_.node_slots + slot), l, field_);
+    return sum / float(r_.layers);
+  }
+
+  // The energy at any place, between the four cells around it.
+  float at(float x, float y, const Lattice& l) const {
+    float dx, dy;
+    const int i = cell(x, l.height, dx), j = cell(y, l.width, dy);
+    const float* one = field_ + size_t(i) * l.wide;
+    const float* other = field_ + size_t(i + 1 < l.height ? i + 1 : 0) * l.wide;
+    const int next = j + 1 < l.width ? j + 1 : 0;
+    return (1 - dx) * ((1 - dy) * one[j] + dy * one[next]) +
+           dx * ((1 - dy) * other[j] + dy * other[next]);
   }
 
   void end(const Lattice& l) const {

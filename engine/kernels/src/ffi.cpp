@@ -8,6 +8,7 @@ namespace ffi = xla::ffi;
 using microcosmos::Arrays;
 using microcosmos::Observed;
 using microcosmos::Rollout;
+using microcosmos::Slots;
 
 namespace {
 
@@ -63,6 +64,15 @@ ffi::Error rollout(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictio
   });
 }
 
+ffi::Error live(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictionary numbers) {
+  Slots w = {};
+  const std::string wrong = read_window(w, Numbers(numbers));
+  if (!wrong.empty()) return invalid(wrong);
+  Arrays arrays(args, rets);
+  if (arrays.begin()) name_window(arrays, w);
+  return each_world(arrays, w, [&] { microcosmos::ISA::live(w); });
+}
+
 ffi::Error develop(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dictionary numbers) {
   Rollout r = {};
   const std::string wrong = read_development(r, Numbers(numbers));
@@ -90,6 +100,7 @@ ffi::Error summarise(ffi::RemainingArgs args, ffi::RemainingRets rets, ffi::Dict
                                 ffi::Ffi::Bind().RemainingArgs().RemainingRets().Attrs())
 
 MICROCOSMOS_TARGET(rollout);
+MICROCOSMOS_TARGET(live);
 MICROCOSMOS_TARGET(develop);
 MICROCOSMOS_TARGET(summarise);
 

@@ -19,7 +19,7 @@ struct Nodes {
     for (Floats* one : {&x, &y, &new_x, &new_y, &here}) *one = Floats(b.node_slots + 2 * BLOCK);
     angle = Floats(b.edge_slots + 2 * BLOCK);
     for (int n = 0; n < r.nodes; n++) here[b.node_slot[n]] = float(r.present[n]);
-    boxes = Floats(2 * size_t(r.bodies)), anchor.assign(r.bodies, -1);
+    boxes = Floats(2 * size_t(r.bodies)), anchor.assign(std::max(r.bodies, 1), -1);
     for (int n = r.nodes; n-- > 0;)
       if (r.present[n]) anchor[r.member[n]] = b.node_slot[n];
     while (leader + 1 < r.bodies && anchor[leader] < 0) leader++;

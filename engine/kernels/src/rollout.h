@@ -42,6 +42,19 @@ enum Parameter {
 };
 // Places of `control`; a bound of 0 is none.
 enum Bound { ANGLE_SCALE, LENGTH_SCALE, PHASE, MAX_SPEED, LAG_SHARE, MAX_BEND, BOUND_COUNT };
+// The same of a slot, with the steps of a stroke and those in which it grows.
+enum Mean { PERIOD = BOUND_COUNT, RAMP, MEAN_COUNT };
+// What nodes sense, as sums of these; whole evaluations know the energy alone. The order is that
+// of `world.senses`.
+enum Sense {
+  SENSED_ENERGY = 1,
+  SENSED_ENERGY_ACROSS = 2,
+  SENSED_ENERGY_ALONG = 4,
+  SENSED_FLOW_ALONG = 8,
+  SENSED_FLOW_ACROSS = 16
+};
+constexpr int32_t ALL_SENSES = 31;
+inline int count_of(int32_t senses) { return __builtin_popcount(uint32_t(senses)); }
 
 struct Rollout {
   // The world, (height, width) cells; nodes, edges and joints of all bodies.
@@ -101,7 +114,8 @@ struct Rollout {
 
   // The controller, see `world.controller`.
   Commands commands;
-  bool recurrent, senses, waves, actuated;
+  bool recurrent, waves, actuated;
+  int32_t senses;  // See `Sense`.
   int32_t rows, links, inputs, sites, timers, terms;
   const float* given_angle;        // (step, joint)
   const float* given_length;       // (step, edge)

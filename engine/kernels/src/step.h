@@ -9,6 +9,7 @@
 #include "measuring.h"
 #include "repulsion.h"
 #include "rings.h"
+#include "slots.h"
 #include "surroundings.h"
 #include "sweeps.h"
 
@@ -38,7 +39,8 @@ class Stopwatch {
 
 class World {
  public:
-  explicit World(const Rollout& r)
+  // With `creatures` these are the bodies of `r`, and command their own rest shapes.
+  explicit World(const Rollout& r, Creatures* creatures = nullptr)
       : team_(std::min(r.threads, r.height)),  // Each member has rows.
         r_(r),
         b_(r),
@@ -60,6 +62,7 @@ class World {
         energy_(b_, r, l_),
         motion_(b_),
         measuring_(b_, r),
+        creatures_(creatures),
         watch_(r.timed ? r.seconds : nullptr) {
     if (r.soft) softened_ = Floats(r.joints);
     if (r.layers == 2)
@@ -69,6 +72,9 @@ class World {
   void run() {
     team_.run([](void* world, int member) { static_cast<World*>(world)->run(member); }, this);
   }
+
+  // Write the ends of creatures to their slots.
+  void scatter() const { creatures_->scatter(b_, n_); }
 
  private:
   void run(int number) {
@@ -95,6 +101,10 @@ class World {
         interpolate<false>(p_, l_, l_.velocity, forcing_.velocity_x, forcing_.velocity_y, me);
         stop(INTERPOLATION, me);
       }
+      if (creatures_) {
+        creatures_->act(b_, n_, forcing_, p_, l_, energy_, me);
+        stop(CONTROL, me);
+      }
       move(t, me.share);
       stop(CONSTRAINTS, me);
       if (r_.fluid) {
@@ -103,10 +113,13 @@ class World {
         stop(FORCING, me);
         spread(p_, l_, forcing_.x, forcing_.y, me);
         stop(SPREADING, me);
-      } else if (r_.energetic)
+      } else if (r_.energetic) {
         cover(p_, l_, me);
+        me.wait();  // Members may still sense energy that others take.
+      }
       if (r_.energetic) energy_.collect(p_, l_, me);
       carry(me.share);
+      if (creatures_) creatures_->tally(b_, n_, forcing_, motion_, repulsion_, me);
       put_within_box(b_, n_, r_, me.share.bodies);
       if (r_.observed) measuring_.record(t, n_, forcing_, motion_, me);
       me.wait();  // A member records nodes of other shares, which the next step moves.
@@ -155,6 +168,7 @@ class World {
     }
     for (int e = edges.from; e < edges.to; e++) n_.angle[b_.edge_slot[e]] = r_.angles[e];
     me.wait();
+    if (creatures_) creatures_->begin(b_, n_, me);
   }
 
   // Return the collision and streaming for this world, compiled for its forces and its row length.
@@ -351,9 +365,18 @@ class World {
   Energy energy_;
   Motion motion_;
   Measuring measuring_;
+  Creatures* creatures_;
   Stopwatch watch_;
   Floats normals_x_, normals_y_, softened_;
 };
+
+// A window of steps of the creatures in all slots.
+inline void live(const Slots& w) {
+  Creatures creatures(w);
+  World world(creatures.r, &creatures);
+  world.run();
+  world.scatter();
+}
 
 // The rest shapes that a controller commands in open loop and actuators carry out.
 inline void develop(const Rollout& r) {

@@ -34,6 +34,7 @@ class Arrays {
 
   void in(const char* name, const float** to, Shape shape) { operand(name, (void**)to, shape); }
   void in(const char* name, const int32_t** to, Shape shape) { operand(name, (void**)to, shape); }
+  void out(const char* name, int32_t** to, Shape shape) { out(name, (float**)to, shape); }
   void out(const char* name, float** to, Shape shape) {
     *to = static_cast<float*>(page_result(results_++, name, items(shape)));
   }
@@ -83,6 +84,15 @@ EXPORT(rollout) void call_rollout() {
   name_rollout(arrays, r);
   require_sound(r);
   ISA::World(r).run();
+}
+
+EXPORT(live) void call_live() {
+  Slots w = {};
+  Arrays arrays;
+  require(read_window(w, Numbers()));
+  name_window(arrays, w);
+  require_sound(w);
+  ISA::live(w);
 }
 
 EXPORT(summarise) void call_summarise() {

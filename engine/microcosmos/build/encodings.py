@@ -40,7 +40,7 @@ def build_controls(control: spec.Controller, body: bodies.Body, steps: int) -> g
         rest_length=body.rest_length,
         angle_scale=control.angle_scale,
         length_scale=control.length_scale,
-        senses=getattr(control, "sense_energy", False),
+        senses=("energy",) if getattr(control, "sense_energy", False) else (),
         wave=None if waves is None else 2 * np.pi * waves * path,
     )
 

@@ -1,7 +1,7 @@
 """Elastic filaments: planar Cosserat rods by constraint projection."""
 
 from .chunks import first_chunk
-from .matching import Layout, fitted, matched, rest_positions, softened, turns
+from .matching import Layout, fitted, matched, rest_positions, softened, standing, turns
 from .projection import (
     Pairing,
     Rest,

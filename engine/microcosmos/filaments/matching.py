@@ -12,16 +12,20 @@ from jax.lax import Precision
 from jaxtyping import Array, Bool, Float, Int
 
 from ..groups import Groups
-from .projection import Angles, Positions, Rest, wrap
+from .projection import Angles, Positions, Rest, Rods, wrap
 
 
 class Layout(eqx.Module):
-    """The forward kinematics of bodies, see `bodies.Layout`."""
+    """The forward kinematics of bodies, see `bodies.Layout`.
+
+    Bodies of one size may have a matrix each, with the body as first axis; edges and nodes then
+    stand body by body.
+    """
 
     angle: Float[Array, "edge"]
     rest_angle: Float[Array, "joint"]
-    turned: Float[Array, "edge joint"]
-    placed: Float[Array, "node edge"]
+    turned: Float[Array, "*body _ _"]
+    placed: Float[Array, "*body _ _"]
     pieces: Groups
     """The connected piece of each node."""
     bends: Bool[Array, "joint"] | None = None
@@ -45,6 +49,16 @@ def rest_positions(rest: Rest, layout: Layout) -> Float[Array, "*time node 2"]:
         for along in (jnp.cos(angle), jnp.sin(angle))
     )
     return jnp.stack([x, y], -1)
+
+
+def standing(positions: Positions, angles: Angles, rods: Rods, layout: Layout) -> Rest:
+    """Return the rest shape in which a body stands; angles near the layout's rest angles."""
+    assert rods.joints is not None
+    first, second = rods.joints.T
+    turned = wrap(angles[second] - angles[first] - layout.rest_angle)
+    v = positions[rods.edges[:, 1]] - positions[rods.edges[:, 0]]
+    # The constant keeps the root differentiable where two nodes coincide.
+    return Rest(layout.rest_angle + turned, jnp.sqrt(jnp.sum(v * v, 1) + 1e-24))
 
 
 def softened(rest: Rest, angles: Angles, joints: Int[Array, "joint 2"], layout: Layout) -> Rest:
@@ -95,6 +109,10 @@ def fitted(
     return centre + jnp.stack([c * x - s * y, s * x + c * y], 1)
 
 
-def _product(values, matrix: Float[Array, "out in"]):
+def _product(values, matrix: Float[Array, "*body out in"]):
     """Apply a matrix to the last axis, at full precision also on a GPU."""
-    return jnp.matmul(values, matrix.T, precision=Precision.HIGHEST)
+    if matrix.ndim == 2:
+        return jnp.matmul(values, matrix.T, precision=Precision.HIGHEST)
+    each = values.reshape(*values.shape[:-1], len(matrix), matrix.shape[2])
+    found = jnp.einsum("...bi,boi->...bo", each, matrix, precision=Precision.HIGHEST)
+    return found.reshape(*values.shape[:-1], -1)

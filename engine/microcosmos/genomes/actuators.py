@@ -15,9 +15,9 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, PyTree
 
-from ..filaments import Layout, Rest, fitted, rest_positions, turns, wrap
+from ..filaments import Layout, Rest, fitted, rest_positions, standing, turns
 from ..world import Actuators, State, World, present_edges
-from .encoding import Drive
+from .encoding import Drive, Scalar
 
 
 class Response(eqx.Module):
@@ -64,14 +64,11 @@ def _closed_loop(driven: Drive, actuators: Actuators) -> Drive:
         state = replace(state, memory=memory.controller)
         state = replace(state, memory=driven.remember(world, state, given))
         command = bounded(driven.control(world, state, given), actuators, world)
+        speed, layout = actuators.max_speed, actuators.layout
         paced = command
-        if actuators.max_speed is not None:
-            before = rest_positions(memory.paced, actuators.layout)
-            after = rest_positions(command, actuators.layout)
-            fast = fastest(before, after, actuators.layout, world.present)
-            share = jnp.minimum(1.0, actuators.max_speed / fast)
-            paced = _between(memory.paced, command, share)
-        rest = _between(memory.rest, paced, 1 / (1 + actuators.lag))
+        if speed is not None:
+            paced = towards(memory.paced, command, layout, speed, world.present)
+        rest = between(memory.rest, paced, 1 / (1 + actuators.lag))
         return Response(state.memory, paced, rest)
 
     def control(world: World, state: State, given: Any) -> Rest:
@@ -81,30 +78,45 @@ def _closed_loop(driven: Drive, actuators: Actuators) -> Drive:
     return replace(driven, start=start, control=control, remember=remember)
 
 
+def towards(
+    paced: Rest,
+    command: Rest,
+    layout: Layout,
+    max_speed: Scalar | float,
+    present: Bool[Array, "node"] | None,
+) -> Rest:
+    """Return the shape after a step towards a command, at most so many cells of the fastest
+    node."""
+    before, after = (rest_positions(one, layout) for one in (paced, command))
+    fast = fastest(before, after, layout, present)
+    return between(paced, command, jnp.minimum(1.0, max_speed / fast))
+
+
 def shape_of(state: State, world: World, layout: Layout) -> Rest:
     """Return the rest shape in which the body stands; angles near the layout's rest angles."""
-    assert world.rods.joints is not None
-    first, second = world.rods.joints.T
-    turned = wrap(state.angles[second] - state.angles[first] - layout.rest_angle)
-    v = state.positions[world.rods.edges[:, 1]] - state.positions[world.rods.edges[:, 0]]
-    # The constant keeps the root differentiable where two nodes coincide.
-    return Rest(layout.rest_angle + turned, jnp.sqrt(jnp.sum(v * v, 1) + 1e-24))
+    return standing(state.positions, state.angles, world.rods, layout)
 
 
 def bounded(rest: Rest, actuators: Actuators, world: World) -> Rest:
     """Return rest shapes whose bend, relative to the body at rest, is within the bound."""
     if actuators.max_bend is None:
         return rest
-    turned = turns(rest, actuators.layout)
-    present = present_edges(world)
+    return bent(rest, actuators.layout, actuators.max_bend, present_edges(world))
+
+
+def bent(
+    rest: Rest, layout: Layout, most: Scalar | float, present: Bool[Array, "edge"] | None
+) -> Rest:
+    """Return rest shapes in which any two edges turn apart by at most `most`, in rad."""
+    turned = turns(rest, layout)
     if present is not None:
         # Absent edges turn with the first, which every grown body has: they widen no span.
         present = jnp.broadcast_to(present, turned.shape)
         turned = jnp.where(present, turned, turned[..., :1])
     span = jnp.max(turned, -1) - jnp.min(turned, -1)
     # A body at rest has no span: the least one keeps quotient and gradient finite.
-    share = jnp.minimum(1.0, actuators.max_bend / jnp.maximum(span, 1e-6))[..., None]
-    straight = jnp.broadcast_to(actuators.layout.rest_angle, rest.angle.shape)
+    share = jnp.minimum(1.0, most / jnp.maximum(span, 1e-6))[..., None]
+    straight = jnp.broadcast_to(layout.rest_angle, rest.angle.shape)
     return Rest(straight + share * (rest.angle - straight), rest.length)
 
 
@@ -145,12 +157,13 @@ def lagged(start: Rest, commands: Rest, lag: float) -> Rest:
         return commands
 
     def follow(rest, command):
-        rest = _between(rest, command, 1 / (1 + lag))
+        rest = between(rest, command, 1 / (1 + lag))
         return rest, rest
 
     # Written out in part: on a GPU each round of a loop costs more than the arithmetic.
     return jax.lax.scan(follow, start, commands, unroll=20)[1]
 
 
-def _between(one: Rest, other: Rest, share: Any) -> Rest:
+def between(one: Rest, other: Rest, share: Any) -> Rest:
+    """Return the shape by a share of the way from one to another."""
     return jax.tree.map(lambda x, y: x + share * (y - x), one, other)

@@ -25,9 +25,9 @@ class Controls:
     """The meaning of a controller's inputs and outputs.
 
     `sites` is (site, node), `timer` (input, time), `ramp` (time,); rest angles and lengths are
-    the body's, in rad and cells. A network that `senses` has one more input, known only during
-    the simulation; any other network is evaluated for all times in one batch. Arrays of JAX
-    may differ between creatures.
+    the body's, in rad and cells. A network has one more input for each of its `senses`, known
+    only during the simulation; any other network is evaluated for all times in one batch.
+    Arrays of JAX may differ between creatures.
     """
 
     sites: np.ndarray | Array
@@ -40,7 +40,7 @@ class Controls:
     rest_length: np.ndarray | Array
     angle_scale: float
     length_scale: float
-    senses: bool = False
+    senses: tuple[str, ...] = ()
     wave: np.ndarray | Array | None = None
     """Phase lag in rad (node,) of a travelling sine and cosine; None: there are none."""
     gain: np.ndarray | Array | None = None
@@ -55,7 +55,7 @@ class Controls:
     def inputs(self) -> int:
         """Number of inputs of a network."""
         clocks = 1 if self.wave is None else 2
-        return len(self.sites) + clocks * len(self.timer) + self.senses
+        return len(self.sites) + clocks * len(self.timer) + len(self.senses)
 
 
 def sine_cosine(steps: int, period: float) -> np.ndarray:

@@ -1,7 +1,7 @@
 """One world: a periodic box of viscous fluid with bodies in it, in lattice units."""
 
-from . import gpu, native
-from .controller import Actuators, Controller, Network, Series
+from . import gpu, native, senses, slots
+from .controller import SENSES, Actuators, Controller, Network, Series
 from .model import (
     Form,
     Limits,

@@ -7,6 +7,9 @@ from .. import filaments
 
 Scalar = Float[Array, ""]
 
+SENSES = ("energy", "energy_across", "energy_along", "flow_along", "flow_across")
+"""What a node may sense, see `world.senses`; whole evaluations know the first alone."""
+
 
 class Network(eqx.Module):
     """A network at every node of a body; rows are inputs, two outputs, then hidden nodes."""
@@ -28,8 +31,9 @@ class Network(eqx.Module):
     gain: Float[Array, "joint"]
     """Factor on what the network commands for the angle of a joint."""
     recurrent: bool = eqx.field(static=True)
-    senses: bool = eqx.field(static=True)
-    """True if the energy at the node is an input, so that the loop is closed."""
+    senses: tuple[str, ...] = eqx.field(static=True)
+    """What the node senses, of `SENSES` in their order, as its last inputs: they close the
+    loop."""
 
 
 class Series(eqx.Module):
@@ -75,4 +79,4 @@ class Controller(eqx.Module):
     @property
     def senses(self) -> bool:
         """True if rest shapes depend on the simulation."""
-        return isinstance(self.commands, Network) and self.commands.senses
+        return isinstance(self.commands, Network) and bool(self.commands.senses)

@@ -6,7 +6,7 @@ in its own way: the same on every CPU. It has no derivatives.
 
 import ctypes
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
@@ -23,10 +23,14 @@ from .operands import (
     Numbers,
     body_of,
     controller_of,
+    living_of,
+    slots_of,
     smoothing_of,
+    state_of,
     stiffness_of,
     surroundings_of,
 )
+from .slots import Living, Slots, Tally, flat_state
 
 LOG = logging.getLogger(__name__)
 PARTS = (
@@ -55,6 +59,8 @@ OBSERVED = (
     "boxes",
 )
 """Measures in the order of the kernel's results."""
+TALLY = 8
+"""Numbers of a slot's measures."""
 ALONE: Numbers = {"threads": 1, "observed": True, "timed": False}
 """Default options of a rollout: one thread, measures of each step, no times of the parts."""
 # Places in these tuples are the kernel's numbers of a choice, see `rollout.h`.
@@ -175,6 +181,61 @@ def advance(
     return end, results[-2], results[-1][0]
 
 
+def live(
+    place: World,
+    slots: Slots,
+    living: Living,
+    steps: int,
+    every: int = 1,
+    instruction_set: str | None = None,
+    threads: int = 1,
+) -> tuple[Living, Tally]:
+    """Return what lives after a window of steps, and the measures of each slot, as
+    `genomes.live`. Raises `ValueError` for a world that the kernel does not cover.
+    """
+    return _live(place, slots, living, steps, every, instruction_set, {"threads": threads})[:2]
+
+
+def part_seconds_of_slots(
+    place: World, slots: Slots, living: Living, steps: int, every: int = 1, threads: int = 1
+) -> tuple[Living, Float[Array, "part"]]:
+    """Return what lives after a window, and the time spent in each of `PARTS`, in seconds."""
+    chosen = {"timed": True, "threads": threads}
+    after, _, seconds = _live(place, slots, living, steps, every, None, chosen)
+    return after, seconds
+
+
+def _live(
+    place: World,
+    slots: Slots,
+    living: Living,
+    steps: int,
+    every: int,
+    instruction_set: str | None,
+    chosen: Numbers,
+) -> tuple[Living, Tally, Float[Array, "part"]]:
+    reason = uncovered(place, flat_state(living))
+    if reason:
+        raise ValueError(f"the native kernel does not cover {reason}")
+    state, shapes = state_of(living, slots.occupants.network.bias.shape[1])
+    held, numbers = slots_of(place, slots)
+    around, features = surroundings_of(place)
+    operands = [*state, *held, _parameters(place), *smoothing_of(place), *around]
+    options = {**features, **_form(place), **numbers, **ALONE, **chosen}
+    options |= {"steps": steps, "every": every, "energetic": living.energy is not None}
+    count = len(slots.filled)
+    results = call(
+        register("live", instruction_set),
+        [*shapes, (count, TALLY), (len(PARTS),), (1,)],
+        operands,
+        options,
+        whole={12},
+    )
+    *ends, tally, seconds, _ = results
+    measures = Tally(tally[:, :2], *(tally[:, n] for n in range(2, TALLY)))
+    return living_of(living, ends), measures, seconds
+
+
 def part_seconds(
     world: World, state: State, rest: filaments.Rest, threads: int = 1
 ) -> Float[Array, "part"]:
@@ -263,14 +324,19 @@ def call(
     shapes: Sequence[tuple[int, ...]],
     operands: Sequence[Array],
     options: Mapping[str, int],
+    whole: Collection[int] = (),
 ) -> list[Array]:
-    """Return the results, float32 of these shapes, of a registered function.
+    """Return the results of these shapes of a registered function: float32, or int32 at the
+    places in `whole`.
 
     `shapes` and `operands` are those of one world; under `vmap` batch axes come first.
     """
     function = jax.ffi.ffi_call(
         target,
-        [jax.ShapeDtypeStruct(shape, jnp.float32) for shape in shapes],
+        [
+            jax.ShapeDtypeStruct(shape, jnp.int32 if place in whole else jnp.float32)
+            for place, shape in enumerate(shapes)
+        ],
         # An operand that all worlds of a batch share gets an axis of length 1, not copies.
         vmap_method="expand_dims",
     )

@@ -1,13 +1,16 @@
 """Operands of the native kernel: bodies and controllers as arrays and numbers."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import jax.numpy as jnp
 from jaxtyping import Array, Int
 
 from .. import fields, filaments
-from .controller import Actuators, Controller, Network, Series
+from .controller import SENSES, Actuators, Controller, Network, Series
 from .model import State, World, grown_nodes
+from .slots import Living, Slots
 
 Numbers = dict[str, int]
 GIVEN, NETWORK, SERIES = range(3)
@@ -42,6 +45,135 @@ def body_of(
         "laid_out": layout is not None,
     }
     return arrays, sizes
+
+
+SHAPES = ("command", "paced", "rest")
+"""Shapes that a slot remembers, by the kernel's numbers."""
+
+
+def state_of(living: Living, rows: int) -> tuple[list[Array], list[tuple[int, ...]]]:
+    """Return the state of slots, of networks with so many rows, in the kernel's order, and the
+    shapes of its arrays."""
+    shapes = [getattr(living, name) for name in SHAPES]
+    slots, nodes = living.positions.shape[:2]
+    width = living.populations[0].shape[1]
+    values, energy, collected = living.values, living.energy, living.collected
+    if collected is None and energy is not None:
+        collected = _nothing(slots, nodes)
+    arrays = [
+        *living.populations,
+        living.positions,
+        living.angles,
+        living.boxes,
+        living.age,
+        jnp.stack([one.angle for one in shapes], 1),
+        jnp.stack([one.length for one in shapes], 1),
+        _nothing(0, rows, nodes) if values is None else values,
+        _nothing(0, width) if energy is None else energy,
+        _nothing(0, nodes) if collected is None else collected,
+    ]
+    return arrays, [one.shape for one in arrays]
+
+
+def living_of(living: Living, arrays: Sequence[Array]) -> Living:
+    """Return what lives from its arrays in the kernel's order."""
+    positions, angles, boxes, age, angle, length, values, energy, collected = arrays[9:]
+    return Living(
+        tuple(arrays[:9]),
+        positions,
+        angles,
+        boxes,
+        age,
+        *(filaments.Rest(angle[:, n], length[:, n]) for n in range(len(SHAPES))),
+        values=None if living.values is None else values,
+        energy=None if living.energy is None else energy,
+        collected=None if living.collected is None else collected,
+    )
+
+
+def slots_of(place: World, slots: Slots) -> tuple[list[Array], Numbers]:
+    """Return what slots hold, in the kernel's order, and its numbers."""
+    one, network, layout = slots.occupants, slots.occupants.network, slots.occupants.layout
+    rods, matched = one.rods, place.layout is not None
+    count, nodes = one.present.shape
+    joints, edges = rods.bend.shape[1], rods.stretch.shape[1]
+    bends = jnp.ones((count, joints), bool) if layout.bends is None else layout.bends
+    bend = rods.bend if layout.bend is None or not matched else layout.bend
+    swept = [_nothing(0, edges), _nothing(0, joints), _nothing(0, joints)]
+    if not matched:
+        colours = (
+            (place.rods.edge_colours, edges),
+            (place.rods.joint_colours, joints),
+        )
+        swept = [jnp.tile(_colours(*one, one[1])[None], (count, 1)) for one in colours]
+        whole = _nothing(count, joints)
+        if rods.rings is not None:
+            turns = jnp.concatenate([rods.rings.whole, _nothing(count, 1)], 1)
+            whole = jnp.take_along_axis(turns, rods.rings.of, 1)
+        swept.append(whole)
+    lag = network.lag
+    whole_numbers = (
+        slots.filled,
+        slots.number,
+        rods.edges,
+        rods.joints,
+        layout.pieces.member,
+        one.present,
+    )
+    arrays = [
+        *(jnp.asarray(each, jnp.int32) for each in whole_numbers),
+        layout.angle,
+        layout.rest_angle,
+        jnp.asarray(bends, jnp.int32),
+        *(jnp.asarray(each, jnp.int32) for each in swept[:2]),
+        swept[2],
+        rods.stretch,
+        rods.shear,
+        bend,
+        _means(slots),
+        jnp.asarray(network.activation, jnp.int32),
+        network.bias,
+        jnp.asarray(network.source, jnp.int32),
+        jnp.asarray(network.target, jnp.int32),
+        network.weight,
+        network.sites,
+        _nothing(0, nodes) if lag is None else lag,
+        jnp.asarray(network.joint_node, jnp.int32),
+        network.gain,
+        one.rest_length,
+    ]
+    sites = network.sites.shape[1]
+    numbers = {
+        "slots": count,
+        "nodes": nodes,
+        "edges": edges,
+        "joints": joints,
+        "bodies": 1,
+        "matched": matched,
+        "laid_out": True,
+        "commands": NETWORK,
+        "recurrent": network.recurrent,
+        "senses": senses_number(network.senses),
+        "waves": lag is not None,
+        "actuated": True,
+        "rows": network.bias.shape[1],
+        "links": network.weight.shape[1],
+        "inputs": sites + (2 if lag is None else 4) + len(network.senses),
+        "sites": sites,
+        "timers": 2,
+        "terms": 0,
+        "soft": matched and layout.bend is not None,
+    }
+    return arrays, numbers
+
+
+def _means(slots: Slots) -> Array:
+    """Return scales, phase, bounds and clock of each slot, in the kernel's order."""
+    means = slots.occupants.means
+    means = replace(means, lag=1 / (1 + means.lag))
+    names = ("angle_scale", "length_scale", "phase", "max_speed", "lag", "max_bend")
+    values = [getattr(means, name) for name in (*names, "period", "ramp")]
+    return jnp.stack([jnp.asarray(one, jnp.float32) for one in values], 1)
 
 
 def stiffness_of(world: World) -> list[Array]:
@@ -137,11 +269,11 @@ def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
     inputs = 0
     if network is not None:
         clocks = network.timer.shape[1] * (1 if network.lag is None else 2)
-        inputs = len(network.sites) + clocks + network.senses
+        inputs = len(network.sites) + clocks + len(network.senses)
     numbers = {
         "commands": GIVEN if controller is None else SERIES if network is None else NETWORK,
         "recurrent": network is not None and network.recurrent,
-        "senses": network is not None and network.senses,
+        "senses": 0 if network is None else senses_number(network.senses),
         "waves": lag is not None,
         "actuated": controller is not None and controller.actuators is not None,
         "rows": 0 if network is None else len(network.bias),
@@ -152,6 +284,11 @@ def controller_of(controller: Controller | None) -> tuple[list[Array], Numbers]:
         "terms": 0 if series is None else series.basis.shape[1],
     }
     return arrays, numbers
+
+
+def senses_number(senses: tuple[str, ...]) -> int:
+    """Return the kernel's number of senses: a bit for each."""
+    return sum(1 << SENSES.index(one) for one in senses)
 
 
 def _bounds(controller: Controller | None) -> Array:

@@ -41,6 +41,10 @@ class Pushed(eqx.Module):
     """Displacement of the nodes before the projection removes its rigid part."""
     held: Float[Array, "node"]
     """1 where a limit acted."""
+    drift: Float[Array, "node 2"]
+    """Displacement by contact."""
+    velocity: Points
+    """Velocity of the fluid before the step."""
 
 
 def measure(world: World, end: State, rest: filaments.Rest, pushed: Pushed) -> Measures:
@@ -91,12 +95,20 @@ class Motion(eqx.Module):
     """Factor that shortens each displacement to the limit."""
 
 
-def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
-    """Take one step: the fluid carries bodies, constraints move them, the fluid responds."""
+Observer = Callable[[World, State, filaments.Rest, Pushed], Any]
+
+
+def step(
+    world: World, state: State, rest: filaments.Rest, measure: Observer = measure
+) -> tuple[State, Any]:
+    """Take one step: the fluid carries bodies, constraints move them, the fluid responds.
+
+    `measure` makes the measures of the step from its end and the exchange with the fluid.
+    """
     if not world.form.fluid:
-        return step_alone(world, state, rest)
+        return step_alone(world, state, rest, measure)
     rho, momentum = fluid.density(state.populations), fluid.momentum(state.populations)
-    at = _windows(world, state)
+    at = windows(world, state)
     # Without the half step of the bodies' own force, which is not known yet.
     moving = fluid.moving(momentum, world.surroundings)
     velocity = coupling.interpolate(moving, coupling.divided(at, rho))
@@ -129,12 +141,16 @@ def step(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measu
     end = replace(state, populations=populations, positions=positions, angles=motion.angles)
     # Nodes collect where they stood before the step, so the windows `at` serve once more.
     held = _held(motion, forced, groups)
-    pushed = Pushed(fluid.fastest(rho, moving), forcing, forced.target, motion.target, held)
+    pushed = Pushed(
+        fluid.fastest(rho, moving), forcing, forced.target, motion.target, held, drift, velocity
+    )
     end = within_box(world, collect(world, end, at))
     return end, measure(world, end, rest, pushed)
 
 
-def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State, Measures]:
+def step_alone(
+    world: World, state: State, rest: filaments.Rest, measure: Observer = measure
+) -> tuple[State, Any]:
     """Take one step without a fluid: repulsion and constraints move the bodies."""
     push, drift = repel(world, state.positions)
     motion = move(world, state, rest, push)
@@ -145,8 +161,9 @@ def step_alone(world: World, state: State, rest: filaments.Rest) -> tuple[State,
     layers = world.form.layers
     target = coupling.at_points(motion.target, layers)
     nothing, held = jnp.zeros_like(target), (motion.shortened < 1).astype(positions.dtype)
-    pushed = Pushed(jnp.zeros((), positions.dtype), nothing, target, motion.target, held)
-    end = within_box(world, collect(world, end, _windows(world, state)))
+    still = jnp.zeros((), positions.dtype)
+    pushed = Pushed(still, nothing, target, motion.target, held, drift, nothing)
+    end = within_box(world, collect(world, end, windows(world, state)))
     return end, measure(world, end, rest, pushed)
 
 
@@ -194,7 +211,8 @@ def _points(world: World, state: State) -> Float[Array, "point 2"]:
     return coupling.points(state.positions, normals, world.form.layers)
 
 
-def _windows(world: World, state: State) -> coupling.Windows:
+def windows(world: World, state: State) -> coupling.Windows:
+    """Return the cells around the points at which bodies and fluid meet."""
     at = coupling.windows(_points(world, state), world.size, world.form.kernel)
     return coupling.masked(at, present_points(world, world.form.layers))
 

@@ -1,0 +1,301 @@
+"""Slots: places for creatures of different bodies and networks in one world.
+
+What a slot holds and its state are arrays with the slot as first axis, so a creature is born,
+or dies, by other numbers in the same arrays: nothing is compiled anew, and the arrays are the
+checkpoint.
+"""
+
+from dataclasses import replace
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float, Int
+
+from .. import coupling, filaments, fluid
+from ..groups import Groups
+from ..units import mach
+from .controller import Network
+from .model import State, World, present_edges, with_bodies
+from .stepping import Pushed
+
+Scalar = Float[Array, ""]
+
+
+class Means(eqx.Module):
+    """Scales, clock and actuators of one creature. A bound of infinity is none."""
+
+    angle_scale: Scalar
+    """Largest angle that is added to a rest angle, rad."""
+    length_scale: Scalar
+    """Largest share that is added to a rest length."""
+    phase: Scalar
+    """Lead of the timer, rad."""
+    max_speed: Scalar
+    """Cells a step of the fastest node, in the frame that moves and turns with the body."""
+    lag: Scalar
+    """Time constant of the first-order response, in steps."""
+    max_bend: Scalar
+    """Largest angle that is added between any two edges, rad."""
+    period: Scalar
+    """Steps of a stroke."""
+    ramp: Scalar
+    """Steps in which the stroke grows after birth."""
+
+
+class Occupant(eqx.Module):
+    """What a slot holds: a body alone, the network at its nodes, and its means.
+
+    In a world with slots all arrays have the slot as first axis. Colours of swept bodies are
+    those of the world, whose bodies then are all equal.
+    """
+
+    rods: filaments.Rods
+    present: Bool[Array, "node"]
+    layout: filaments.Layout
+    rest_length: Float[Array, "edge"]
+    network: Network
+    """Its timer is that of the means."""
+    means: Means
+
+
+class Slots(eqx.Module):
+    """What all slots hold."""
+
+    occupants: Occupant
+    filled: Bool[Array, "slot"]
+    number: Int[Array, "slot"]
+    """Of each creature: the kernel adds up in this order, so the order of slots has no effect
+    on its bits."""
+
+
+class Living(eqx.Module):
+    """The state of a world with slots, after a step."""
+
+    populations: fluid.Populations
+    positions: Float[Array, "slot node 2"]
+    """In cells, from the corner of the box that holds the creature's anchor."""
+    angles: Float[Array, "slot edge"]
+    boxes: Float[Array, "slot 2"]
+    """See `State.boxes`."""
+    age: Int[Array, "slot"]
+    """Steps since birth."""
+    command: filaments.Rest
+    """Last command (slot, joint) and (slot, edge), within the bound on the bend."""
+    paced: filaments.Rest
+    """The command after the bound on speed."""
+    rest: filaments.Rest
+    """The rest shape after the lag."""
+    values: Float[Array, "slot row node"] | None = None
+    """Values of recurrent networks."""
+    energy: Float[Array, "x y"] | None = None
+    collected: Float[Array, "slot node"] | None = None
+    """Energy that each node has taken since birth."""
+
+
+class Tally(eqx.Module):
+    """Measures of each slot in a window; 0 where it is empty."""
+
+    displacement: Float[Array, "slot 2"]
+    """Of the mean of the nodes, in cells."""
+    path: Float[Array, "slot"]
+    """Length of the way of that mean, in cells."""
+    turned: Float[Array, "slot"]
+    """Turn of the mean direction of the edges, in rad."""
+    work: Float[Array, "slot"]
+    """Work on the fluid; a cell's mass is 1."""
+    contact: Float[Array, "slot"]
+    """Way that contact with others and with obstacles moved its nodes, in cells."""
+    limited: Float[Array, "slot"]
+    """Sum over steps of the share of nodes at a limit."""
+    mach: Float[Array, "slot"]
+    """Largest Mach number of the fluid at its nodes."""
+
+
+def inhabited(place: World, slots: Slots) -> World:
+    """Return the world with the bodies of all slots: nodes, edges and joints slot by slot."""
+    one = slots.occupants
+    count, nodes = one.present.shape
+    edges = one.rods.edges.shape[1]
+    number = jnp.arange(count)[:, None, None]
+    assert one.rods.joints is not None
+    rods = filaments.Rods(
+        edges=_flat(one.rods.edges + nodes * number),
+        edge_colours=place.rods.edge_colours,
+        joint_colours=place.rods.joint_colours,
+        stretch=_flat(one.rods.stretch),
+        shear=_flat(one.rods.shear),
+        bend=_flat(one.rods.bend),
+        joints=_flat(one.rods.joints + edges * number),
+        rings=None if one.rods.rings is None else _rings(one.rods.rings, count),
+    )
+    layout, pieces = one.layout, one.layout.pieces
+    piece = pieces.member + pieces.count * jnp.arange(count)[:, None]
+    matched = filaments.Layout(
+        angle=_flat(layout.angle),
+        rest_angle=_flat(layout.rest_angle),
+        turned=layout.turned,
+        placed=layout.placed,
+        pieces=Groups(_flat(piece), count * pieces.count, ascending=False),
+        bends=None if layout.bends is None else _flat(layout.bends),
+        bend=None if layout.bend is None else _flat(layout.bend),
+    )
+    return replace(
+        place,
+        rods=rods,
+        groups=Groups(jnp.repeat(jnp.arange(count, dtype=jnp.int32), nodes), count),
+        layout=None if place.layout is None else matched,
+        present=_flat(one.present & slots.filled[:, None]),
+    )
+
+
+def _rings(rings: filaments.Rings, count: int) -> filaments.Rings:
+    at = jnp.arange(count)[:, None]
+    of = jnp.where(rings.of < rings.count, rings.of + rings.count * at, count * rings.count)
+    of = of.astype(rings.of.dtype)
+    return filaments.Rings(
+        _flat(of), _flat(rings.sign), _flat(rings.whole), count * rings.count
+    )
+
+
+def flat_state(living: Living) -> State:
+    """Return the same state for the world of `inhabited`."""
+    return State(
+        living.populations,
+        _flat(living.positions),
+        _flat(living.angles),
+        living.boxes,
+        living.energy,
+        None if living.collected is None else _flat(living.collected),
+    )
+
+
+def with_state(living: Living, state: State) -> Living:
+    """Return what lives with its bodies, the fluid and the energy of a state."""
+    collected = living.collected
+    return replace(
+        living,
+        populations=state.populations,
+        positions=state.positions.reshape(living.positions.shape),
+        angles=state.angles.reshape(living.angles.shape),
+        boxes=state.boxes,
+        energy=state.energy,
+        collected=None
+        if collected is None or state.collected is None
+        else state.collected.reshape(collected.shape),
+    )
+
+
+def _flat(values: Array) -> Array:
+    return values.reshape(-1, *values.shape[2:])
+
+
+def empty(place: World, start: State, one: Occupant, count: int) -> tuple[Slots, Living]:
+    """Return slots that hold nothing, in the fluid and the energy of `start`.
+
+    `one` is any creature of the size that slots have.
+    """
+
+    def room(x):
+        return jnp.zeros((count, *jnp.shape(x)), jnp.asarray(x).dtype)
+
+    nodes, edges, joints = len(one.present), len(one.rods.edges), len(one.rods.bend)
+    dtype, rows = start.positions.dtype, len(one.network.bias)
+    shape = filaments.Rest(jnp.zeros((count, joints), dtype), jnp.zeros((count, edges), dtype))
+    living = Living(
+        start.populations,
+        jnp.zeros((count, nodes, 2), dtype),
+        jnp.zeros((count, edges), dtype),
+        jnp.zeros((count, 2), dtype),
+        jnp.zeros(count, jnp.int32),
+        *(shape,) * 3,
+        values=jnp.zeros((count, rows, nodes), dtype) if one.network.recurrent else None,
+        energy=start.energy,
+        collected=None if start.energy is None else jnp.zeros((count, nodes), dtype),
+    )
+    slots = Slots(
+        jax.tree.map(room, one), jnp.zeros(count, bool), jnp.zeros(count, jnp.int32)
+    )
+    return slots, living
+
+
+def born(
+    slots: Slots,
+    living: Living,
+    slot: Int[Array, ""] | int,
+    one: Occupant,
+    positions: Float[Array, "node 2"],
+    number: Int[Array, ""] | int,
+) -> tuple[Slots, Living]:
+    """Return a world in which a slot holds a newborn at `positions`, in cells.
+
+    It is at rest in the shape in which it stands.
+    """
+    angles = filaments.edge_angles(positions, one.rods)
+    rest = filaments.standing(positions, angles, one.rods, one.layout)
+
+    def put(into, what):
+        return jax.tree.map(lambda x, y: x.at[slot].set(y), into, what)
+
+    held = Slots(
+        put(slots.occupants, one),
+        slots.filled.at[slot].set(True),
+        slots.number.at[slot].set(number),
+    )
+    values, collected = (
+        None if x is None else x.at[slot].set(0.0) for x in (living.values, living.collected)
+    )
+    return held, replace(
+        living,
+        positions=living.positions.at[slot].set(positions),
+        angles=living.angles.at[slot].set(angles),
+        boxes=living.boxes.at[slot].set(0.0),
+        age=living.age.at[slot].set(0),
+        **{name: put(getattr(living, name), rest) for name in ("command", "paced", "rest")},
+        values=values,
+        collected=collected,
+    )
+
+
+def removed(slots: Slots, slot: Int[Array, ""] | int) -> Slots:
+    """Return slots of which one is empty."""
+    return replace(slots, filled=slots.filled.at[slot].set(False))
+
+
+class Step(eqx.Module):
+    """What `Tally` adds up of a step, by slot."""
+
+    centre: Float[Array, "slot 2"]
+    boxes: Float[Array, "slot 2"]
+    heading: Float[Array, "slot"]
+    work: Float[Array, "slot"]
+    contact: Float[Array, "slot"]
+    limited: Float[Array, "slot"]
+    mach: Float[Array, "slot"]
+
+
+def by_slot(world: World, end: State, _: filaments.Rest, pushed: Pushed) -> Step:
+    """Return the measures of a step by slot, for `step`."""
+    groups, layers = world.groups, world.form.layers
+    assert world.present is not None
+    weights = world.present.astype(end.positions.dtype)
+    points = groups.repeated(layers)
+    here = jnp.repeat(world.present, layers)
+    speed = jnp.where(here, jnp.sum(pushed.velocity * pushed.velocity, 1), 0.0)
+    return Step(
+        *place_of(world, end),
+        work=points.total(jnp.sum(pushed.forcing * pushed.target, 1)),
+        contact=groups.mean(jnp.sqrt(jnp.sum(pushed.drift * pushed.drift, 1)), weights),
+        limited=groups.mean(pushed.held, weights),
+        mach=mach(jnp.sqrt(jnp.maximum(points.largest(speed), 0.0))),
+    )
+
+
+def place_of(world: World, state: State):
+    """Return the mean of each slot's nodes, its boxes, and the mean direction of its edges."""
+    groups, edges = world.groups, present_edges(world)
+    assert world.present is not None and edges is not None
+    weights = world.present.astype(state.positions.dtype)
+    of_edge = replace(groups, member=groups.member[world.rods.edges[:, 0]])
+    heading = of_edge.mean(state.angles, edges.astype(state.angles.dtype))
+    return groups.mean(state.positions, weights), state.boxes, heading
