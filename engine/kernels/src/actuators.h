@@ -14,7 +14,11 @@ class Actuators {
   Rest paced, rest;  // The command after the bound on speed, and the shape after the lag.
 
   Actuators(const Bodies& b, const Rollout& r, const Nodes& n)
-      : b_(b), r_(r), here_(n.here), shapes_(b, r, r.actuated) {
+      : b_(b),
+        r_(r),
+        here_(n.here),
+        shapes_(b, r, r.actuated),
+        paced_shapes_(b, r, r.actuated) {
     before_x_ = Floats(b.node_slots + BLOCK), before_y_ = Floats(b.node_slots + BLOCK);
     start_.angle.resize(r.joints), start_.length.resize(r.edges);
     edge_here_.resize(r.edges);
@@ -59,15 +63,21 @@ class Actuators {
   void closed_loop(float* angle, float* length) {
     if (!r_.actuated) return;
     bound(angle);
+    aim(angle, length);
     follow(angle, length, angle, length);
   }
 
-  // Take a step towards a bounded command: write the rest shape.
+  // Lay out a bounded command, which the next steps follow.
+  void aim(const float* angle, const float* length) {
+    if (r_.control[MAX_SPEED] > 0) shapes_.lay_out(angle, length);
+  }
+
+  // Take a step towards the command: write the rest shape.
   void follow(const float* angle, const float* length, float* to_angle, float* to_length) {
     float share = 1;
     if (r_.control[MAX_SPEED] > 0) {
-      lay_out_before(paced.angle.data(), paced.length.data());
-      share = r_.control[MAX_SPEED] / fastest(angle, length);
+      paced_shapes_.lay_out(paced.angle.data(), paced.length.data());
+      share = r_.control[MAX_SPEED] / fastest(paced_shapes_.x, paced_shapes_.y);
       share = share < 1 ? share : 1;
     }
     auto step = [&](const float* command, List<float>& paced, List<float>& rest, float* to) {
@@ -135,14 +145,13 @@ class Actuators {
     std::memcpy(before_y_, shapes_.y, 4 * size_t(b_.node_slots));
   }
 
-  // The largest displacement of a node from the kept shape to another, less rigid motion.
-  float fastest(const float* angle, const float* length) {
-    shapes_.lay_out(angle, length);
+  // The largest displacement of a node from a shape to the one that is laid out, less rigid motion.
+  float fastest(const float* before_x, const float* before_y) {
     Most largest;
     for (const Piece& piece : b_.pieces)
-      fit(piece, shapes_, here_, before_x_, before_y_,
+      fit(piece, shapes_, here_, before_x, before_y,
           [&](int i, Vec x, Vec y) __attribute__((always_inline)) {
-            x = x - load(before_x_ + i), y = y - load(before_y_ + i);
+            x = x - load(before_x + i), y = y - load(before_y + i);
             const Ints here = load(here_ + i) > 0.0f;
             largest.add(0, here ? x * x + y * y : Vec{});
           });
@@ -156,7 +165,8 @@ class Actuators {
     List<double> took(T + 1);
     lay_out_before(start_.angle.data(), start_.length.data());
     for (int t = 0; t < T; t++) {
-      const float speed = fastest(angle + size_t(t) * J, length + size_t(t) * E);
+      shapes_.lay_out(angle + size_t(t) * J, length + size_t(t) * E);
+      const float speed = fastest(before_x_, before_y_);
       const float share = speed / r_.control[MAX_SPEED];
       took[t + 1] = took[t] + (share > 1 ? share : 1);
       keep();
@@ -172,7 +182,7 @@ class Actuators {
   const Bodies& b_;
   const Rollout& r_;
   const float* here_;
-  Shapes shapes_;
+  Shapes shapes_, paced_shapes_;
   Rest start_;
   Floats before_x_, before_y_;
   List<uint8_t> edge_here_;

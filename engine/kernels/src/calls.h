@@ -48,11 +48,14 @@ std::string read_world(Rollout& r, Numbers number) {
   r.fixed_magic = number("magic");
   r.soft = number("soft");
   r.fluid = number("fluid"), r.repelled = number("repelled"), r.energetic = number("energetic");
+  r.paired = number("paired");
   r.driven = number("driven"), r.varied = number("varied"), r.walled = number("walled"),
   r.barred = number("barred"), r.damped = number("damped"), r.observed = number("observed"),
   r.timed = number("timed"), r.threads = number("threads");
   if (!number.error.empty()) return number.error;
   if (r.height < 4 || r.width < 4) return "a world has at least 4 cells along each axis";
+  if (r.paired && (r.height < 16 || r.width < 16))
+    return "bodies meet in a world of at least 16 cells along each axis";
   if (r.threads < 1 || r.threads > 1024) return "there is at least one thread, and at most 1024";
   if (!r.observed && r.commands != GIVEN) return "what is commanded is observed";
   if (r.iterations < 1 || r.layers < 1 || r.layers > 2 || r.sweeps < 0)
@@ -79,15 +82,20 @@ std::string read_window(Slots& w, Numbers number) {
   if (wrong.empty()) wrong = read_world(w.r, number);
   if (!wrong.empty()) return wrong;
   w.slots = number("slots"), w.every = number("every");
+  w.r.fed = number("fed"), w.r.carried = number("carried");
+  w.r.food_every = number("food_every");
   if (!number.error.empty()) return number.error;
   if (w.slots < 1 || w.every < 1) return "there is at least one slot, and a step to a command";
   if (w.r.commands != NETWORK || w.r.timers != 2 || !w.r.laid_out || w.r.bodies != 1)
     return "a slot has one body with a layout and a network with a periodic timer";
-  if (w.r.senses && !(w.r.fluid && w.r.energetic)) {
-    const int32_t of_energy = SENSED_ENERGY | SENSED_ENERGY_ACROSS | SENSED_ENERGY_ALONG;
-    if (w.r.senses & of_energy && !w.r.energetic) return "there is no energy to sense";
-    if (w.r.senses & ~of_energy && !w.r.fluid) return "there is no flow to sense";
-  }
+  const int32_t of_energy = SENSED_ENERGY | SENSED_ENERGY_ACROSS | SENSED_ENERGY_ALONG;
+  const int32_t of_flow = SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS;
+  if (w.r.fed && w.r.energetic) return "a world has energy or food";
+  if (w.r.fed && w.r.food_every < 1) return "food changes every step or more seldom";
+  if (w.r.fed && w.r.carried && !w.r.fluid) return "there is no flow that carries food";
+  if (w.r.senses & SENSED_ACCOUNT && !w.r.fed) return "there is no account to sense";
+  if (w.r.senses & of_energy && !w.r.energetic && !w.r.fed) return "there is no energy to sense";
+  if (w.r.senses & of_flow && !w.r.fluid) return "there is no flow to sense";
   return "";
 }
 
@@ -151,8 +159,9 @@ void name_controller(Arrays& a, Rollout& r) {
 template <class Arrays>
 void name_surroundings(Arrays& a, Rollout& r) {
   const int64_t H = r.height, W = r.width;
-  a.in("smoothing across rows", &r.smoothing_x, {when(r.repelled, 2), H});
-  a.in("smoothing along rows", &r.smoothing_y, {when(r.repelled, 2), W});
+  const int64_t smoothed = when(r.repelled && !r.paired, 2);
+  a.in("smoothing across rows", &r.smoothing_x, {smoothed, H});
+  a.in("smoothing along rows", &r.smoothing_y, {smoothed, W});
   a.in("uniform force", &r.uniform_force, {when(r.driven, 2)});
   a.in("forces across rows", &r.force_x, {when(r.varied, H), W});
   a.in("forces along rows", &r.force_y, {when(r.varied, H), W});
@@ -177,6 +186,8 @@ void name_window(Arrays& a, Slots& w) {
   a.in("values of networks", &w.values, {when(r.recurrent, S), R, N});
   a.in("energy", &r.energy, {when(r.energetic, H), W});
   a.in("collected", &r.collected, {when(r.energetic, S), N});
+  a.in("food", &r.food, {when(r.fed, H), W}), a.in("accounts", &w.account, {when(r.fed, S)});
+  a.in("time", &r.time, {when(r.fed, 1)});
   a.in("filled", &w.filled, {S}), a.in("numbers", &w.number, {S});
   a.in("edges", &r.ends, {S, E, 2}), a.in("joints", &r.pairs, {S, J, 2});
   a.in("piece", &r.piece, {S, N}), a.in("present", &r.present, {S, N});
@@ -195,6 +206,8 @@ void name_window(Arrays& a, Slots& w) {
   a.in("nodes of joints", &r.joint_node, {S, J}), a.in("gains of joints", &r.gain, {S, J});
   a.in("rest lengths of bodies", &r.body_length, {S, E});
   a.in("parameters", &r.parameters, {STEP_LENGTHS + r.iterations});
+  a.in("capacity", &r.capacity, {when(r.fed, H), W});
+  a.in("rations", &r.rations, {when(r.fed, RATION_COUNT)});
   name_surroundings(a, r);
   for (int i = 0; i < 9; i++) a.out("a plane", &r.end_populations[i], {H, W});
   a.out("positions", &r.end_positions, {S, N, 2}), a.out("angles", &r.end_angles, {S, E});
@@ -204,7 +217,11 @@ void name_window(Arrays& a, Slots& w) {
   a.out("values of networks", &w.end_values, {when(r.recurrent, S), R, N});
   a.out("energy", &r.end_energy, {when(r.energetic, H), W});
   a.out("collected", &r.end_collected, {when(r.energetic, S), N});
+  a.out("food", &r.end_food, {when(r.fed, H), W});
+  a.out("accounts", &w.end_account, {when(r.fed, S)});
+  a.out("time", &r.end_time, {when(r.fed, 1)});
   a.out("measures", &w.tally, {S, TALLY_COUNT});
+  a.out("grown", &r.grown, {when(r.fed, H)}), a.out("lost", &r.lost, {when(r.fed, H)});
   a.out("seconds", &r.seconds, {PART_COUNT}), a.out("memory", &r.memory, {1});
   a.end();
 }

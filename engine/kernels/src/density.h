@@ -58,7 +58,7 @@ struct Smoothing {
 class Density {
  public:
   Density(const Rollout& r, int members) : height_(r.height), width_(r.width) {
-    if (!r.repelled) return;
+    if (!r.repelled || r.paired) return;
     along_x_.emplace(r.smoothing_x, height_), along_y_.emplace(r.smoothing_y, width_);
     blocks_ = (width_ + BLOCK - 1) / BLOCK;
     row_ = size_t(blocks_) * BLOCK;

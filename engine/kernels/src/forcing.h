@@ -35,7 +35,7 @@ struct Forcing {
     for (int n = 0; n < r.iterations; n++) {
       if (n) {  // Nothing is forced yet in the first iteration: there is nothing to spread.
         me.wait();  // A cell adds the forcing of points of all members,
-        spread(p, l, x, y, me);
+        spread<false>(p, l, x, y, me);
         me.wait();  // and a point reads cells of all bands.
         interpolate<true>(p, l, l.force, reached_x_, reached_y_, me);
       }

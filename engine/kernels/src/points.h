@@ -233,17 +233,27 @@ struct Inside {
   INLINE bool operator()(int32_t row) const { return uint32_t(row) - start < cells; }
 };
 
-// Spread the vectors at points to the forces in the cells of a band.
-inline __attribute__((noinline)) void spread(const Points& p, Lattice& l, const float* x,
+// Spread the vectors at points to the forces in the cells of a band. With WHOLE all cells of
+// touched blocks are set; otherwise only those in windows, which points read.
+template <bool WHOLE>
+__attribute__((noinline)) void spread(const Points& p, Lattice& l, const float* x,
                                              const float* y, const Member& me) {
   const Band& band = l.bands[me.number];
-  each_touched(band, [&](int o) __attribute__((always_inline)) {
-    float* g = l.force + 2 * size_t(o);
-    store(g, Vec{}), store(g + LANES, Vec{});
-  });
-  for (int n = 0; n < band.beyond_rows; n++)
-    std::memset(l.force + 2 * (l.wide * band.beyond[n] + l.width), 0, 32);
   const Inside inside(l, band);
+  if (WHOLE)
+    each_touched(band, [&](int o) __attribute__((always_inline)) {
+      float* g = l.force + 2 * size_t(o);
+      store(g, Vec{}), store(g + LANES, Vec{});
+    });
+  else
+    for (int number : band.points)
+      each_row(p.windows[number], l, [&](int, int32_t row) __attribute__((always_inline)) {
+        if (inside(row)) store(l.force + 2 * size_t(row), Vec8{});
+      });
+  for (int n = 0; n < band.beyond_rows; n++) {
+    float* g = l.force + 2 * l.wide * band.beyond[n];
+    std::memset(g, 0, 32), std::memset(g + 2 * l.width, 0, 32);
+  }
   for (int number : band.points) {
     const Window& window = p.windows[number];
     const float *w = window.weights, a = x[window.slot], b = y[window.slot];

@@ -1,7 +1,10 @@
 // Repulsion between nodes, down the gradient of their smoothed density, as in `world.nodes` and
 // `fields.steric`.
 #pragma once
+#include <optional>
+
 #include "density.h"
+#include "meetings.h"
 #include "nodes.h"
 
 namespace microcosmos::ISA {
@@ -12,9 +15,17 @@ class Repulsion {
   Floats drift_x, drift_y;  // Rigid motion of bodies that touch each other.
 
   Repulsion(const Bodies& b, const Rollout& r, const List<Share>& shares)
-      : b_(b), r_(r), density_(r, int(shares.size())) {
+      : b_(b), r_(r), density_(r, int(shares.size())), clusters_(r.bodies) {
     for (Floats* one : {&push_x, &push_y, &drift_x, &drift_y}) *one = Floats(b.node_slots + BLOCK);
+    factor_.assign(r.bodies, 1), touched_.assign(r.bodies, 0), rigid_.assign(r.bodies, {});
     if (!r.repelled) return;
+    // Bodies of which nothing has grown stand nowhere.
+    anchor_x_.assign(r.bodies, __builtin_nanf("")), anchor_y_.assign(r.bodies, __builtin_nanf(""));
+    if (r.paired) {
+      capped_.assign(shares.size(), 0);
+      meetings_.emplace(b, r, !r.matched || r.soft, int(shares.size()));
+      return;
+    }
     for (const Share& share : shares) {
       const int from = int(order_.size());
       for (int p = share.pieces.from; p < share.pieces.to; p++)
@@ -23,11 +34,16 @@ class Repulsion {
       parts_.push_back({from, int(order_.size())});
     }
     places_.resize(order_.size());
-    // Bodies of which nothing has grown stand nowhere.
-    anchor_x_.assign(r.bodies, __builtin_nanf("")), anchor_y_.assign(r.bodies, __builtin_nanf(""));
   }
 
+  // The density of other bodies at a slot.
+  float others(int slot) const { return meetings_ ? meetings_->others[slot] : 0; }
+  // Whether a body touches others, and whether this moved it less than it would.
+  bool touched(int body) const { return touched_[body]; }
+  bool limited(int body) const { return touched_[body] && factor_[body] < 1; }
+
   void find(const Nodes& n, const Member& me) {
+    if (r_.paired) return meet(n, me);
     const Range mine = parts_[me.number];
     for (int i = mine.from; i < mine.to; i++)
       places_[i] = density_.place(n.x[order_[i]], n.y[order_[i]]);
@@ -56,6 +72,79 @@ class Repulsion {
   struct Frame {
     float nodes, x, y, inertia;
   };
+
+  // Find displacements where bodies meet.
+  void meet(const Nodes& n, const Member& me) {
+    const Range bodies = me.share.bodies;
+    for (int body = bodies.from; body < bodies.to; body++) {
+      touched_[body] = 0;
+      if (n.anchor[body] >= 0)
+        anchor_x_[body] = n.x[n.anchor[body]], anchor_y_[body] = n.y[n.anchor[body]];
+    }
+    meetings_->find(n, me);
+    for (const auto& [body, other] : meetings_->touching[me.number]) touched_[body] = 1;
+    capped_[me.number] = 0;
+    for (int body = bodies.from; body < bodies.to; body++) {
+      move(body, b_.bodies[body], n);
+      capped_[me.number] |= factor_[body] < 1;
+    }
+    me.wait();  // Factors of all bodies are known.
+    if (std::any_of(capped_.begin(), capped_.end(), [](uint8_t one) { return one; })) {
+      if (me.first()) clusters_.share(meetings_->touching, factor_.data());
+      me.wait();
+    }
+    for (int body = bodies.from; body < bodies.to; body++) {
+      const Frame f = frame(b_.bodies[body], n);
+      const float turn = factor_[body] * rigid_[body].spin;
+      const float x = factor_[body] * rigid_[body].x, y = factor_[body] * rigid_[body].y;
+      each(b_.bodies[body], [&](int i, int) __attribute__((always_inline)) {
+        const Vec ax = load(n.x + i) - f.x, ay = load(n.y + i) - f.y;
+        store(drift_x + i, x - turn * ay), store(drift_y + i, y + turn * ax);
+      });
+    }
+  }
+
+  // Find the rigid motion of a body by others, the share of it that is within the limit, and in a
+  // soft body what is left of the displacements of its nodes.
+  void move(int number, Range body, const Nodes& n) {
+    const float strength = -r_.parameters[REPULSION], limit = r_.parameters[REPULSION_LIMIT];
+    const Meetings& m = *meetings_;
+    rigid_[number] = {}, factor_[number] = 1;
+    part(number, rigid_[number]);
+    const bool soft = !r_.matched || r_.soft;
+    if (!touched_[number] && !soft) return;
+    const Frame f = frame(body, n);
+    auto push = [&](bool own) {
+      each(body, [&](int i, int) __attribute__((always_inline)) {
+        Vec x = load(m.others_x + i), y = load(m.others_y + i);
+        if (own) x = x + load(m.own_x + i), y = y + load(m.own_y + i);
+        store(push_x + i, strength * x), store(push_y + i, strength * y);
+      });
+      return rigid_part(body, n, f);
+    };
+    if (touched_[number]) {
+      Rigid& rigid = rigid_[number];
+      const Rigid found = push(false);
+      rigid.x += found.x, rigid.y += found.y, rigid.spin = found.spin;
+      Most farthest;
+      each(body, [&](int i, int part) __attribute__((always_inline)) {
+        const Vec x = load(n.x + i) - f.x, y = load(n.y + i) - f.y;
+        farthest.add(part, load(n.here + i) * (x * x + y * y));
+      });
+      const float moved = root(rigid.x * rigid.x + rigid.y * rigid.y + 1e-24f);
+      const float tip = root(rigid.spin * rigid.spin * farthest.total() + 1e-24f);
+      const float most = limit / (moved > tip ? moved : tip);
+      factor_[number] = most < 1 ? most : 1;
+    }
+    if (soft) {
+      capped(body, n, f, push(true), limit);
+      // The cap has changed the sums, so the rigid part goes a second time.
+      remove(body, n, f, rigid_part(body, n, f));
+    } else
+      each(body, [&](int i, int) __attribute__((always_inline)) {
+        store(push_x + i, Vec{}), store(push_y + i, Vec{});
+      });
+  }
 
   // Divide the displacements of a body into those within it and its rigid motion.
   void divide(int number, Range body, const Nodes& n) {
@@ -174,6 +263,12 @@ class Repulsion {
   List<Range> parts_;
   List<Place> places_;
   List<float> anchor_x_, anchor_y_;  // Of each body.
+  std::optional<Meetings> meetings_;
+  Clusters clusters_;
+  List<float> factor_;    // On the motion of each body by contact.
+  List<uint8_t> touched_;  // Each body that touches others.
+  List<Rigid> rigid_;
+  List<uint8_t> capped_;  // Of each member: whether a factor is below 1.
 };
 
 }  // namespace microcosmos::ISA

@@ -43,6 +43,8 @@ enum Parameter {
 // Places of `control`; a bound of 0 is none.
 enum Bound { ANGLE_SCALE, LENGTH_SCALE, PHASE, MAX_SPEED, LAG_SHARE, MAX_BEND, BOUND_COUNT };
 // The same of a slot, with the steps of a stroke and those in which it grows.
+// Places of `rations`.
+enum Ration { BITE, REGROWTH, DECAY, FOOD_DIFFUSION, UNIT, FULL, RATION_COUNT };
 enum Mean { PERIOD = BOUND_COUNT, RAMP, MEAN_COUNT };
 // What nodes sense, as sums of these; whole evaluations know the energy alone. The order is that
 // of `world.senses`.
@@ -51,9 +53,11 @@ enum Sense {
   SENSED_ENERGY_ACROSS = 2,
   SENSED_ENERGY_ALONG = 4,
   SENSED_FLOW_ALONG = 8,
-  SENSED_FLOW_ACROSS = 16
+  SENSED_FLOW_ACROSS = 16,
+  SENSED_TOUCH = 32,
+  SENSED_ACCOUNT = 64
 };
-constexpr int32_t ALL_SENSES = 31;
+constexpr int32_t ALL_SENSES = 127;
 inline int count_of(int32_t senses) { return __builtin_popcount(uint32_t(senses)); }
 
 struct Rollout {
@@ -66,6 +70,7 @@ struct Rollout {
   bool fixed_magic;  // Lambda = 3/16 at every viscosity; otherwise capped.
   bool fluid;        // Without a fluid, only constraints move bodies.
   bool repelled;     // Nodes repel each other.
+  bool paired;       // They do so pair by pair where bodies meet; otherwise on the lattice.
   bool energetic;    // There is energy.
   bool driven;       // A uniform force acts on the fluid.
   bool varied;       // A force that differs from cell to cell acts on the fluid.
@@ -85,6 +90,16 @@ struct Rollout {
   const float* boxes;           // (body, 2) whole boxes before the one that positions count from
   const float* energy;          // (height, width)
   const float* collected;       // (node)
+
+  // Food in quanta, see `fields.food`.
+  bool fed, carried;
+  int32_t food_every;       // Steps.
+  const int32_t* food;      // (height, width)
+  const int32_t* capacity;  // (height, width)
+  const float* rations;     // (RATION_COUNT)
+  const int32_t* time;      // (1) steps since the start
+  int32_t *end_food, *end_time;
+  int32_t *grown, *lost;  // (height) quanta of each row
 
   // Weights along each axis that smooth the density of nodes: of smoothing, then of the slope.
   const float* smoothing_x;  // (2, height)

@@ -12,6 +12,7 @@
 #include "actuators.h"
 #include "controller.h"
 #include "energy.h"
+#include "food.h"
 #include "forcing.h"
 #include "measuring.h"
 #include "repulsion.h"
@@ -28,6 +29,8 @@ enum Tallied {
   TALLY_TURNED,
   TALLY_WORK,
   TALLY_CONTACT,
+  TALLY_TOUCHED,
+  TALLY_CAPPED,
   TALLY_LIMITED,
   TALLY_NEAR,
   TALLY_COUNT
@@ -45,6 +48,8 @@ struct Slots {
   const float* shape_angles;      // (slot, SHAPE_COUNT, joint)
   const float* shape_lengths;     // (slot, SHAPE_COUNT, edge)
   const float* values;            // (slot, row, node) of recurrent networks
+  const int32_t* account;         // (slot) quanta
+  int32_t* end_account;
   int32_t* end_age;
   float *end_shape_angles, *end_shape_lengths, *end_values;
   float* tally;  // (slot, TALLY_COUNT)
@@ -71,13 +76,14 @@ class Creature {
   struct Start {
     int nodes, edges, joints;
   };
-  const int slot;
+  const int slot, body;
   const Start at;
   Kept nodes, edges, joints;
   List<int32_t> ends, pairs;  // Within the creature.
   int32_t age;
 
-  Creature(const Slots& w, int slot, Start at) : slot(slot), at(at), age(w.age[slot]), w_(w) {
+  Creature(const Slots& w, int slot, int body, Start at)
+      : slot(slot), body(body), at(at), age(w.age[slot]), w_(w) {
     const Rollout& r = w.r;
     const int64_t N = r.nodes, E = r.edges, J = r.joints;
     const int32_t *present = r.present + slot * N, *given = r.ends + 2 * slot * E,
@@ -135,6 +141,7 @@ class Creature {
     sensed_ = Floats(size_t(count_of(r.senses)) * node_count() + BLOCK);
     for (List<float>* one : {&across_x_, &across_y_}) one->resize(node_count() + BLOCK);
     remember();
+    actuators_->aim(command_.angle.data(), command_.length.data());
   }
 
   // Set the rest shape of a step; `look` fills in what the nodes sense.
@@ -145,6 +152,7 @@ class Creature {
       look(*this, sensed_, across_x_.data(), across_y_.data());
       controller_->command(0, 1, sensed_, command_.angle.data(), command_.length.data());
       actuators_->bound(command_.angle.data());
+      actuators_->aim(command_.angle.data(), command_.length.data());
     }
     actuators_->follow(command_.angle.data(), command_.length.data(), rest_angle + at.joints,
                        rest_length + at.edges);
@@ -230,6 +238,7 @@ class Creature {
 class Creatures {
  public:
   Rollout r;  // Of the world that has them as bodies.
+  List<int32_t> accounts;  // Of each body.
 
   explicit Creatures(const Slots& w) : r(w.r), w_(w) {
     const int64_t N = w.r.nodes, E = w.r.edges, J = w.r.joints;
@@ -242,9 +251,10 @@ class Creatures {
     });
     Creature::Start at = {};
     for (int32_t slot : order) {
-      one_.push_back(std::make_unique<Creature>(w, slot, at));
+      const int body = int(one_.size());
+      one_.push_back(std::make_unique<Creature>(w, slot, body, at));
       Creature& c = *one_.back();
-      const int body = int(one_.size()) - 1;
+      accounts.push_back(w.r.fed ? w.account[slot] : 0);
       for (int32_t n : c.nodes.items) {
         const int64_t k = slot * N + n;
         member_.push_back(body), piece_.push_back(at.nodes + w.r.piece[k]);
@@ -278,11 +288,11 @@ class Creatures {
 
   // Command the rest shapes of a step for the creatures of a share.
   void act(const Bodies& b, const Nodes& n, const Forcing& f, const Points& p, const Lattice& l,
-           const Energy& e, const Member& me) {
+           const Energy& e, const Food& food, const Repulsion& repulsion, const Member& me) {
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
       one_[body]->act(rest_angle_.data(), rest_length_.data(),
                       [&](const Creature& c, float* sensed, float* ax, float* ay) {
-                        if (w_.r.senses) look(c, b, n, f, p, l, e, sensed, ax, ay);
+                        if (w_.r.senses) look(c, b, n, f, p, l, e, food, repulsion, sensed, ax, ay);
                       });
   }
 
@@ -324,6 +334,7 @@ class Creatures {
       const float count = divisor(float(one_[body]->node_count()));
       t.limited += limited.total() / count, t.contact += touched.total() / count;
       t.work += work.total();
+      t.touched += repulsion.touched(body), t.capped += repulsion.limited(body);
       for (Vec one : near)
         for (int lane = 0; lane < LANES; lane++) t.near = most_or_nan(one[lane], t.near);
       float now[2];
@@ -353,6 +364,7 @@ class Creatures {
         w_.r.end_angles[c.slot * E + c.edges.items[k]] = end_angles_[c.at.edges + k];
       for (int axis : {0, 1}) w_.r.end_boxes[2 * c.slot + axis] = end_boxes_[2 * body + axis];
       c.record();
+      if (r.fed) w_.end_account[c.slot] = accounts[body];
       write(b, n, int(body), w_.tally + c.slot * TALLY_COUNT);
     }
   }
@@ -364,6 +376,7 @@ class Creatures {
     float first_boxes[2], boxes[2];
     float heading, near;
     double path, work, contact, limited;
+    int touched, capped;
   };
 
   float size(int axis) const { return float(axis ? r.width : r.height); }
@@ -380,6 +393,7 @@ class Creatures {
     std::copy_n(w_.shape_lengths, S * SHAPE_COUNT * E, w_.end_shape_lengths);
     if (from.recurrent) std::copy_n(w_.values, S * R * N, w_.end_values);
     if (from.energetic) std::copy_n(from.collected, S * N, from.end_collected);
+    if (from.fed) std::copy_n(w_.account, S, w_.end_account);
     std::fill_n(w_.tally, S * TALLY_COUNT, 0.0f);
     std::fill_n(from.seconds, PART_COUNT, 0.0f), *from.memory = 0;
   }
@@ -428,35 +442,59 @@ class Creatures {
                                (n.boxes[2 * body + axis] - t.first_boxes[axis]) * size(axis);
     to[TALLY_PATH] = float(t.path), to[TALLY_TURNED] = heading(b, n, body) - t.heading;
     to[TALLY_WORK] = float(t.work), to[TALLY_CONTACT] = float(t.contact), to[TALLY_LIMITED] = float(t.limited);
+    to[TALLY_TOUCHED] = float(t.touched), to[TALLY_CAPPED] = float(t.capped);
     to[TALLY_NEAR] = 1.7320508f * root(t.near);
   }
 
   // What the nodes of a creature sense, (sense, node).
   void look(const Creature& c, const Bodies& b, const Nodes& n, const Forcing& f, const Points& p,
-            const Lattice& l, const Energy& e, float* sensed, float* ax, float* ay) const {
+            const Lattice& l, const Energy& e, const Food& food, const Repulsion& repulsion,
+            float* sensed, float* ax, float* ay) const {
     const int count = c.node_count();
     auto slot = [&](int k) { return b.node_slot[c.at.nodes + k]; };
     auto senses = [&](int sense) { return w_.r.senses & sense; };
+    auto energy = [&](float x, float y) { return r.fed ? food.at(x, y, l) : e.at(x, y, l); };
     if (senses(SENSED_ENERGY_ACROSS | SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS)) normals(c, b, n, ax, ay);
     if (senses(SENSED_ENERGY)) {
-      for (int k = 0; k < count; k++) sensed[k] = e.near(p, l, slot(k));
+      for (int k = 0; k < count; k++) sensed[k] = r.fed ? near(food, p, l, slot(k)) : e.near(p, l, slot(k));
       sensed += count;
     }
     if (senses(SENSED_ENERGY_ACROSS)) {
       for (int k = 0; k < count; k++) {
         const float x = n.x[slot(k)], y = n.y[slot(k)], dx = ASIDE * ax[k], dy = ASIDE * ay[k];
-        sensed[k] = e.at(x + dx, y + dy, l) - e.at(x - dx, y - dy, l);
+        sensed[k] = energy(x + dx, y + dy) - energy(x - dx, y - dy);
       }
       sensed += count;
     }
     if (senses(SENSED_ENERGY_ALONG)) {
       const int last = slot(count ? count - 1 : 0), first = slot(0);
       const float rise =
-          count ? e.at(n.x[first], n.y[first], l) - e.at(n.x[last], n.y[last], l) : 0;
+          count ? energy(n.x[first], n.y[first]) - energy(n.x[last], n.y[last]) : 0;
       for (int k = 0; k < count; k++) sensed[k] = rise;
       sensed += count;
     }
-    if (!senses(SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS)) return;
+    if (senses(SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS))
+      sensed = stream(c, b, f, sensed, ax, ay);
+    if (senses(SENSED_TOUCH)) {
+      for (int k = 0; k < count; k++) sensed[k] = repulsion.others(slot(k));
+      sensed += count;
+    }
+    if (senses(SENSED_ACCOUNT))
+      for (int k = 0; k < count; k++) sensed[k] = float(accounts[c.body]) / r.rations[FULL];
+  }
+
+  float near(const Food& food, const Points& p, const Lattice& l, int slot) const {
+    float sum = 0;
+    for (int layer = 0; layer < r.layers; layer++)
+      sum += food.near(p.window(layer * (p.slots / p.layers) + slot), l);
+    return sum / float(r.layers);
+  }
+
+  // Speed of the water at the nodes of a creature, less that of its nodes together.
+  float* stream(const Creature& c, const Bodies& b, const Forcing& f, float* sensed,
+                const float* ax, const float* ay) const {
+    const int count = c.node_count();
+    auto slot = [&](int k) { return b.node_slot[c.at.nodes + k]; };
     float mean_x = 0, mean_y = 0;
     auto velocity = [&](const Floats& of, int k) {
       return r.layers == 1 ? of[slot(k)] : 0.5f * (of[slot(k)] + of[b.node_slots + slot(k)]);
@@ -465,13 +503,14 @@ class Creatures {
       mean_x += velocity(f.velocity_x, k), mean_y += velocity(f.velocity_y, k);
     mean_x /= divisor(float(count)), mean_y /= divisor(float(count));
     for (int across : {0, 1}) {
-      if (!senses(across ? SENSED_FLOW_ACROSS : SENSED_FLOW_ALONG)) continue;
+      if (!(w_.r.senses & (across ? SENSED_FLOW_ACROSS : SENSED_FLOW_ALONG))) continue;
       for (int k = 0; k < count; k++) {
         const float x = velocity(f.velocity_x, k) - mean_x, y = velocity(f.velocity_y, k) - mean_y;
         sensed[k] = STREAM * (across ? x * ax[k] + y * ay[k] : x * ay[k] - y * ax[k]);
       }
       sensed += count;
     }
+    return sensed;
   }
 
   // Unit vectors across a creature at its nodes, as `filaments.normals`.

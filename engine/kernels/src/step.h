@@ -60,10 +60,12 @@ class World {
         repulsion_(b_, r, shares_),
         barrier_(b_, r),
         energy_(b_, r, l_),
+        food_(r, l_),
         motion_(b_),
         measuring_(b_, r),
         creatures_(creatures),
         watch_(r.timed ? r.seconds : nullptr) {
+    food_.team(team_.size());
     if (r.soft) softened_ = Floats(r.joints);
     if (r.layers == 2)
       normals_x_ = Floats(b_.node_slots + BLOCK), normals_y_ = Floats(b_.node_slots + BLOCK);
@@ -92,7 +94,7 @@ class World {
       if (r_.barred) barrier_.find(n_, me);
       if (r_.repelled || r_.barred) stop(REPELLING, me);
       place_points(me.share);
-      if (r_.fluid || r_.energetic) find_windows(p_, l_, WEIGHTS[r_.delta], me);
+      if (r_.fluid || r_.energetic || r_.fed) find_windows(p_, l_, WEIGHTS[r_.delta], me);
       stop(WINDOWS, me);
       if (r_.fluid) {
         find_moments(l_, l_.bands[number]);
@@ -102,7 +104,7 @@ class World {
         stop(INTERPOLATION, me);
       }
       if (creatures_) {
-        creatures_->act(b_, n_, forcing_, p_, l_, energy_, me);
+        creatures_->act(b_, n_, forcing_, p_, l_, energy_, food_, repulsion_, me);
         stop(CONTROL, me);
       }
       move(t, me.share);
@@ -111,13 +113,18 @@ class World {
         forcing_.find(b_, p_, l_, r_, me);
         me.wait();  // A cell adds the final forces of points of all members.
         stop(FORCING, me);
-        spread(p_, l_, forcing_.x, forcing_.y, me);
+        spread<true>(p_, l_, forcing_.x, forcing_.y, me);
         stop(SPREADING, me);
       } else if (r_.energetic) {
         cover(p_, l_, me);
         me.wait();  // Members may still sense energy that others take.
       }
       if (r_.energetic) energy_.collect(p_, l_, me);
+      if (r_.fed) {
+        me.wait();  // Members may still sense food that others eat.
+        food_.eat(b_, n_, l_, creatures_->accounts.data(), me);
+        food_.change(l_, me);
+      }
       carry(me.share);
       if (creatures_) creatures_->tally(b_, n_, forcing_, motion_, repulsion_, me);
       put_within_box(b_, n_, r_, me.share.bodies);
@@ -220,7 +227,7 @@ class World {
     for (int e = edges.from; e < edges.to; e++) r_.end_angles[e] = n_.angle[b_.edge_slot[e]];
     if (me.first()) {
       std::memcpy(r_.end_boxes, n_.boxes, 8 * size_t(r_.bodies));
-      energy_.end(l_);
+      energy_.end(l_), food_.end(l_);
       if (r_.timed) *r_.memory = float(held);
     }
   }
@@ -363,6 +370,7 @@ class World {
   Repulsion repulsion_;
   Barrier barrier_;
   Energy energy_;
+  Food food_;
   Motion motion_;
   Measuring measuring_;
   Creatures* creatures_;

@@ -122,6 +122,14 @@ INLINE Vec absolute(Vec a) { return (Vec)((Ints)a & 0x7fffffff); }
 INLINE Vec nearest(Vec a) { return (a + 12582912.0f) - 12582912.0f; }  // 1.5 * 2^23.
 INLINE Vec wrapped(Vec angle) { return angle - 6.2831855f * nearest(angle * 0.15915494f); }
 
+// Whether any lane is set.
+INLINE bool any(Ints set) {
+  uint64_t words[LANES / 2], all = 0;
+  memcpy(words, &set, sizeof words);
+  for (uint64_t one : words) all |= one;
+  return all != 0;
+}
+
 // A sum, or the largest value, over blocks of slots.
 struct Sum {
   Vec parts[PARTS] = {};

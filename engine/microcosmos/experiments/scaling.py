@@ -261,8 +261,8 @@ def _constrain(scene: Scene, state: world.State) -> world.State:
 
 
 def _repel(scene: Scene, state: world.State) -> world.State:
-    push, drift = world.repel(scene.box, state.positions)
-    return replace(state, positions=state.positions + 1e-3 * (push + drift))
+    found = world.repel(scene.box, state.positions)
+    return replace(state, positions=state.positions + 1e-3 * (found.push + found.drift))
 
 
 def _median(part: Step, scene: Scene, start: world.State, plan: Timing) -> float:

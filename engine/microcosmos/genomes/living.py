@@ -13,10 +13,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from .. import fields
 from ..filaments import Rest
 from ..portable import cosine, sine
-from ..world import Controller, Network, World, grown_rods, step
-from ..world.senses import sensed
+from ..world import Controller, Network, State, World, flow, grown_rods, step
+from ..world.senses import Stock, sensed
 from ..world.slots import (
     Living,
     Means,
@@ -27,6 +28,7 @@ from ..world.slots import (
     by_slot,
     flat_state,
     inhabited,
+    intake,
     place_of,
     with_state,
 )
@@ -87,21 +89,54 @@ def live(
         box = replace(box, rods=grown_rods(box.rods, box.present))
     senses = slots.occupants.network.senses
 
-    def advanced(living: Living, _: Any) -> tuple[Living, Step]:
+    def advanced(living: Living, _: Any) -> tuple[Living, tuple[Step, Any]]:
         flat = flat_state(living)
-        rows = sensed(box, flat, senses).reshape(len(senses), *living.positions.shape[:2])
+        rows = sensed(box, flat, senses, _stock(place, living))
+        rows = rows.reshape(len(senses), *living.positions.shape[:2])
         # What an empty slot would command may be no number, which would spread.
         living = _chosen(slots.filled, _act(slots.occupants, living, rows, every), living)
         rest = Rest(living.rest.angle.reshape(-1), living.rest.length.reshape(-1))
         end, seen = step(box, flat, rest, by_slot)
         age = living.age + slots.filled.astype(living.age.dtype)
-        return with_state(replace(living, age=age), end), seen
+        fed, changes = _fed(box, flat, living)
+        return with_state(replace(fed, age=age), end), (seen, changes)
 
     before = place_of(box, flat_state(living))
-    after, seen = jax.lax.scan(advanced, living, length=steps)
+    after, (seen, changes) = jax.lax.scan(advanced, living, length=steps)
     # An empty slot stays as it was.
     after = _chosen(slots.filled, after, living)
-    return after, _added_up(place, slots, before, seen)
+    tally = _added_up(place, slots, before, seen)
+    if changes is not None:
+        grown, lost = (jnp.sum(one, 0) for one in changes)
+        tally = replace(tally, grown=grown, lost=lost)
+    return after, replace(tally, intake=intake(living, after))
+
+
+def _stock(place: World, living: Living) -> Stock | None:
+    food, account = living.food, living.account
+    if place.food is None or food is None or account is None:
+        return None
+    unit, full = place.food.unit, place.food.full
+    return Stock(food.astype(unit.dtype) / unit, account.astype(full.dtype) / full)
+
+
+def _fed(box: World, flat: State, living: Living) -> tuple[Living, Any]:
+    """Return what lives after creatures have eaten where they stood before the step, and food
+    has changed; with the quanta that have grown and that are lost."""
+    given, food, account, time = box.food, living.food, living.account, living.time
+    if given is None or food is None or account is None or time is None:
+        return living, None
+    hungry = box.groups.per_node(account < fields.food.FULL_ACCOUNT)
+    assert box.present is not None
+    food, ate = fields.eaten(food, flat.positions, box.present & hungry, given.bite)
+    time, nothing = time + 1, jnp.zeros(len(food), food.dtype)
+    food, grown, lost = jax.lax.cond(
+        time % given.every == 0,
+        lambda: fields.changed(food, given, flow(box, flat), box.surroundings.solid),
+        lambda: (food, nothing, nothing),
+    )
+    account = account + box.groups.total(ate)
+    return replace(living, food=food, account=account, time=time), (grown, lost)
 
 
 def _act(
@@ -186,6 +221,8 @@ def _chosen(filled: Any, after: Living, before: Living) -> Living:
         name: jax.tree.map(chosen, getattr(after, name), getattr(before, name))
         for name in ("command", "paced", "rest", "values", "positions", "angles", "boxes")
     }
+    if after.account is not None:
+        of_slots["account"] = chosen(after.account, before.account)
     if after.collected is not None:
         of_slots["collected"] = chosen(after.collected, before.collected)
     return replace(after, **of_slots)
@@ -205,6 +242,8 @@ def _added_up(place: World, slots: Slots, before: Any, seen: Step) -> Tally:
         turned=heading[-1] - heading[0],
         work=jnp.sum(seen.work, 0),
         contact=jnp.sum(seen.contact, 0),
+        touched=jnp.sum(seen.touched, 0),
+        capped=jnp.sum(seen.capped, 0),
         limited=jnp.sum(seen.limited, 0),
         mach=jnp.max(seen.mach, 0),
     )

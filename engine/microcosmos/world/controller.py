@@ -7,7 +7,15 @@ from .. import filaments
 
 Scalar = Float[Array, ""]
 
-SENSES = ("energy", "energy_across", "energy_along", "flow_along", "flow_across")
+SENSES = (
+    "energy",
+    "energy_across",
+    "energy_along",
+    "flow_along",
+    "flow_across",
+    "touch",
+    "account",
+)
 """What a node may sense, see `world.senses`; whole evaluations know the first alone."""
 
 

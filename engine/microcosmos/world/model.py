@@ -64,13 +64,29 @@ class World(eqx.Module):
     nu_c: Float[Array, ""] | None = None
     """Viscosity at which actuators have half of their strength; None: full strength."""
     steric: fields.Steric | None = None
+    contact: fields.Contact | None = None
+    """Repulsion where bodies meet, pair by pair, instead of `steric`; None: none."""
     barrier: fields.Barrier | None = None
     """Displacements that keep bodies out of solid cells; None: bodies pass through them."""
     energy: fields.Energy | None = None
+    food: fields.Food | None = None
+    """Energy in whole numbers, which creatures in slots eat, instead of `energy`."""
     surroundings: fluid.Surroundings = fluid.Surroundings()
     present: Bool[Array, "node"] | None = None
     """Nodes that have grown; None: all. The others rest and do nothing; their constraints have
     stiffness 0."""
+
+    def __check_init__(self):
+        if self.contact is None:
+            return
+        if self.steric is not None:
+            raise ValueError("a world must have `steric` or `contact`, got both.")
+        if min(self.size) < fields.contact.LEAST:
+            least = fields.contact.LEAST
+            raise ValueError(
+                f"`size` must be at least {least} along each axis where bodies meet, "
+                f"got {self.size}."
+            )
 
 
 class State(eqx.Module):

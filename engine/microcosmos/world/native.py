@@ -24,13 +24,14 @@ from .operands import (
     body_of,
     controller_of,
     living_of,
+    rations_of,
     slots_of,
     smoothing_of,
     state_of,
     stiffness_of,
     surroundings_of,
 )
-from .slots import Living, Slots, Tally, flat_state
+from .slots import Living, Slots, Tally, flat_state, intake
 
 LOG = logging.getLogger(__name__)
 PARTS = (
@@ -59,7 +60,9 @@ OBSERVED = (
     "boxes",
 )
 """Measures in the order of the kernel's results."""
-TALLY = 8
+WHOLE = {12, 18, 19, 20}
+"""Places of whole numbers among the results of `live`: ages, food, accounts, time."""
+TALLY = 10
 """Numbers of a slot's measures."""
 ALONE: Numbers = {"threads": 1, "observed": True, "timed": False}
 """Default options of a rollout: one thread, measures of each step, no times of the parts."""
@@ -220,20 +223,28 @@ def _live(
     state, shapes = state_of(living, slots.occupants.network.bias.shape[1])
     held, numbers = slots_of(place, slots)
     around, features = surroundings_of(place)
-    operands = [*state, *held, _parameters(place), *smoothing_of(place), *around]
-    options = {**features, **_form(place), **numbers, **ALONE, **chosen}
+    food, eating = rations_of(place)
+    operands = [*state, *held, _parameters(place), *food, *smoothing_of(place), *around]
+    options = {**features, **eating, **_form(place), **numbers, **ALONE, **chosen}
     options |= {"steps": steps, "every": every, "energetic": living.energy is not None}
-    count = len(slots.filled)
+    count, rows = len(slots.filled), 0 if place.food is None else place.size[0]
     results = call(
         register("live", instruction_set),
-        [*shapes, (count, TALLY), (len(PARTS),), (1,)],
+        [*shapes, (count, TALLY), (rows,), (rows,), (len(PARTS),), (1,)],
         operands,
         options,
-        whole={12},
+        whole={*WHOLE, len(shapes) + 1, len(shapes) + 2},
     )
-    *ends, tally, seconds, _ = results
-    measures = Tally(tally[:, :2], *(tally[:, n] for n in range(2, TALLY)))
-    return living_of(living, ends), measures, seconds
+    *ends, tally, grown, lost, seconds, _ = results
+    after = living_of(living, ends)
+    measures = Tally(
+        tally[:, :2],
+        *(tally[:, n] for n in range(2, TALLY)),
+        intake=intake(living, after),
+        grown=grown if rows else None,
+        lost=lost if rows else None,
+    )
+    return after, measures, seconds
 
 
 def part_seconds(
@@ -314,7 +325,8 @@ def _form(world: World) -> dict[str, int]:
         "delta": DELTAS.index(form.kernel),
         "magic": MAGIC.index(form.magic),
         "fluid": form.fluid,
-        "repelled": world.steric is not None,
+        "repelled": world.steric is not None or world.contact is not None,
+        "paired": world.contact is not None,
         "soft": world.layout is not None and world.layout.bend is not None,
     }
 
@@ -381,7 +393,7 @@ def _parameters(world: World) -> Array:
     # A rate of 0 takes nothing; without one energy is counted and stays.
     rate = -1.0 if energy is None or energy.rate is None else energy.rate
     diffusion = 0.0 if energy is None or energy.diffusion is None else energy.diffusion
-    steric = world.steric
+    steric = world.steric if world.contact is None else world.contact
     repulsion = (0.0, 0.0) if steric is None else (steric.strength, steric.limit)
     barred = 0.0 if world.barrier is None else world.barrier.limit
     factors = (form.force_factor, form.theta_feedback)

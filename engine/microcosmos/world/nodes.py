@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from .. import coupling, fields
 from ..groups import Groups
@@ -46,16 +47,96 @@ def collect(world: World, state: State, at: coupling.Windows) -> State:
     return replace(state, energy=field, collected=before + taken)
 
 
-def repel(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:
-    """Return steric displacements within bodies, and the rigid motion of each body by contact
-    with others and with obstacles.
+class Repelled(eqx.Module):
+    """Displacements of nodes by repulsion."""
+
+    push: Vectors
+    """Within bodies."""
+    drift: Vectors
+    """The rigid motion of each body by contact with others and with obstacles."""
+    touched: Bool[Array, "group"] | None = None
+    """Bodies that touch others, where the world has `contact`."""
+    limited: Bool[Array, "group"] | None = None
+    """Those that contact moves less than it would, since one of their cluster is at the
+    limit."""
+
+
+def repel(world: World, positions: Vectors) -> Repelled:
+    """Return the displacements of nodes by repulsion.
 
     The forcing on a body has neither force nor torque, which would remove its rigid motion; so
     this motion is returned apart and moves the body after the fluid's response. Displacements
     within bodies have no rigid part, so that no body moves itself.
     """
-    within, drift = _apart(world, positions)
-    return within, drift if world.barrier is None else drift + _kept_out(world, positions)
+    if world.contact is not None:
+        found = _met(world, positions)
+    else:
+        found = Repelled(*_apart(world, positions))
+    if world.barrier is None:
+        return found
+    return replace(found, drift=found.drift + _kept_out(world, positions))
+
+
+def others(world: World, positions: Vectors) -> Scalars:
+    """Return the density of other bodies at each node; zero in a world without `contact`."""
+    if world.contact is None:
+        return jnp.zeros_like(positions[:, 0])
+    return _around(world, positions).value
+
+
+def _around(world: World, positions: Vectors, own: bool = False) -> fields.Density:
+    """Return the density of other bodies at each node, or of the node's own."""
+    member, here = world.groups.member, grown_nodes(world)
+    same = member[:, None] == member[None]
+    counted = (same if own else ~same) & here[:, None] & here[None]
+    return fields.density(positions, world.size, counted)
+
+
+def _met(world: World, positions: Vectors) -> Repelled:
+    """Return the displacements where bodies meet.
+
+    Bodies that touch each other, directly or by others, are one cluster: one factor keeps its
+    motion within the limit, so that displacements times nodes sum to zero over it.
+    """
+    contact, groups = world.contact, world.groups
+    assert contact is not None
+    weights, near = _weights(world, positions), _around(world, positions)
+    push = -contact.strength * near.gradient
+    moved = coupling.force_free(push, weights, positions, groups)
+    turned = coupling.torque_free(push, weights, positions, groups) - moved
+    moved = moved + _parted(world, positions)
+
+    def farthest(ways: Vectors) -> Float[Array, "group"]:
+        return jnp.sqrt(groups.largest(weights * jnp.sum(ways * ways, 1)) + 1e-24)
+
+    touched = groups.largest(jnp.where(near.value > 0, 1, 0)) > 0
+    longest = jnp.maximum(farthest(moved), farthest(turned))
+    factor = jnp.where(touched, jnp.minimum(1.0, contact.limit / longest), 1.0)
+    together = _clusters(world, positions)
+    factor = jnp.min(jnp.where(together, factor[None], 1.0), 1)
+    drift = groups.per_node(factor)[:, None] * (moved + turned)
+    limited = touched & (factor < 1)
+    if world.layout is not None and world.layout.bend is None:
+        return Repelled(jnp.zeros_like(push), drift, touched, limited)
+    own = push - contact.strength * _around(world, positions, own=True).gradient
+    within = own - coupling.torque_free(own, weights, positions, groups)
+    within = fields.capped(within, contact.limit)
+    # The cap has changed the sums, so the rigid part goes a second time.
+    within = within - coupling.torque_free(within, weights, positions, groups)
+    return Repelled(within, drift, touched, limited)
+
+
+def _clusters(world: World, positions: Vectors) -> Bool[Array, "group group"]:
+    """Return which bodies touch each other, directly or by others; each itself."""
+    member, here, count = world.groups.member, grown_nodes(world), world.groups.count
+    touch = fields.touching(positions, world.size) & here[:, None] & here[None]
+    pairs = jnp.zeros((count, count), positions.dtype)
+    pairs = pairs.at[member[:, None], member[None]].add(touch.astype(positions.dtype))
+    reached = (pairs > 0) | jnp.eye(count, dtype=bool)
+    for _ in range(max(count - 1, 1).bit_length()):  # Each round doubles the ways.
+        ways = reached.astype(positions.dtype)
+        reached = jnp.matmul(ways, ways) > 0
+    return reached
 
 
 def _apart(world: World, positions: Vectors) -> tuple[Vectors, Vectors]:

@@ -71,13 +71,35 @@ def state_of(living: Living, rows: int) -> tuple[list[Array], list[tuple[int, ..
         _nothing(0, rows, nodes) if values is None else values,
         _nothing(0, width) if energy is None else energy,
         _nothing(0, nodes) if collected is None else collected,
+        *_food_of(living),
     ]
     return arrays, [one.shape for one in arrays]
 
 
+def _food_of(living: Living) -> list[Array]:
+    food, account, time = living.food, living.account, living.time
+    if food is None or account is None or time is None:
+        width, nothing = living.populations[0].shape[1], jnp.zeros(0, jnp.int32)
+        return [nothing.reshape(0, width), nothing, nothing]
+    return [food, account, time[None]]
+
+
+def rations_of(place: World) -> tuple[list[Array], Numbers]:
+    """Return the capacity for food, the numbers by which it changes, and flags."""
+    food = place.food
+    if food is None:
+        none = jnp.zeros((0, place.size[1]), jnp.int32)
+        return [none, _nothing(0)], {"fed": False, "carried": False, "food_every": 1}
+    values = (food.bite, food.regrowth, food.decay, food.diffusion, food.unit, food.full)
+    rations = jnp.stack([jnp.asarray(one, jnp.float32) for one in values])
+    numbers: Numbers = {"fed": True, "carried": food.carried, "food_every": food.every}
+    return [jnp.asarray(food.capacity, jnp.int32), rations], numbers
+
+
 def living_of(living: Living, arrays: Sequence[Array]) -> Living:
     """Return what lives from its arrays in the kernel's order."""
-    positions, angles, boxes, age, angle, length, values, energy, collected = arrays[9:]
+    positions, angles, boxes, age, angle, length, values, energy, collected = arrays[9:18]
+    food, account, time = arrays[18:]
     return Living(
         tuple(arrays[:9]),
         positions,
@@ -88,6 +110,9 @@ def living_of(living: Living, arrays: Sequence[Array]) -> Living:
         values=None if living.values is None else values,
         energy=None if living.energy is None else energy,
         collected=None if living.collected is None else collected,
+        food=None if living.food is None else food,
+        account=None if living.account is None else account,
+        time=None if living.time is None else time[0],
     )
 
 

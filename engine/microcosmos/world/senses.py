@@ -1,11 +1,15 @@
 """What nodes sense of the energy and of the water around them."""
 
+from dataclasses import replace
+
+import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from .. import coupling, filaments, fluid
 from .controller import SENSES
-from .model import State, World, anchors, grown_nodes, mean, present_edges
+from .model import State, World, anchors, grown_nodes, present_edges
+from .nodes import others
 from .stepping import windows
 
 Nodes = Float[Array, "node"]
@@ -16,7 +20,18 @@ STREAM = 20.0
 """Sensed per cell a step of water: 1 at the largest speed of a flow that a spec allows."""
 
 
-def sensed(world: World, state: State, senses: tuple[str, ...]) -> Float[Array, "sense node"]:
+class Stock(eqx.Module):
+    """What creatures sense of a world's quanta."""
+
+    energy: Float[Array, "x y"]
+    """1 in a cell with `Food.unit` quanta."""
+    account: Float[Array, "group"]
+    """1 for a creature with `Food.full` quanta."""
+
+
+def sensed(
+    world: World, state: State, senses: tuple[str, ...], stock: Stock | None = None
+) -> Float[Array, "sense node"]:
     """Return what each node senses: one row for each of `senses`, in the order of `SENSES`.
 
     - `energy`: the energy at the node;
@@ -24,8 +39,12 @@ def sensed(world: World, state: State, senses: tuple[str, ...]) -> Float[Array, 
       seen from its first node to its last;
     - `energy_along`: how much more there is at the first node that has grown than at the last;
     - `flow_along` and `flow_across`: speed of the water towards the last node and to the left,
-      less that of the body's nodes together, 1 at 0.05 cells a step.
+      less that of the body's nodes together, 1 at 0.05 cells a step;
+    - `touch`: the density of other bodies, in nodes a cell;
+    - `account`: what the creature has.
     """
+    if stock is not None:
+        state = replace(state, energy=stock.energy)
     rows = []
     if "energy" in senses:
         energy = coupling.interpolate((_energy(state),), windows(world, state))
@@ -47,6 +66,11 @@ def sensed(world: World, state: State, senses: tuple[str, ...]) -> Float[Array, 
         for name, way in (("flow_along", along), ("flow_across", across)):
             if name in senses:
                 rows.append(jnp.sum(water * way, 1))
+    if "touch" in senses:
+        rows.append(others(world, state.positions))
+    if "account" in senses:
+        assert stock is not None
+        rows.append(world.groups.per_node(stock.account))
     assert len(rows) == len(senses) == len(set(senses) & set(SENSES))
     return jnp.stack(rows) if rows else jnp.zeros((0, len(state.positions)))
 

@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float, Int
 
-from .. import coupling, filaments, fluid
+from .. import fields, filaments, fluid
 from ..groups import Groups
 from ..units import mach
 from .controller import Network
@@ -91,6 +91,12 @@ class Living(eqx.Module):
     energy: Float[Array, "x y"] | None = None
     collected: Float[Array, "slot node"] | None = None
     """Energy that each node has taken since birth."""
+    food: Int[Array, "x y"] | None = None
+    """Quanta in each cell."""
+    account: Int[Array, "slot"] | None = None
+    """Quanta that each creature has."""
+    time: Int[Array, ""] | None = None
+    """Steps since the start of a world with food."""
 
 
 class Tally(eqx.Module):
@@ -106,10 +112,21 @@ class Tally(eqx.Module):
     """Work on the fluid; a cell's mass is 1."""
     contact: Float[Array, "slot"]
     """Way that contact with others and with obstacles moved its nodes, in cells."""
+    touched: Float[Array, "slot"]
+    """Steps in which it touched others, where the world has `contact`."""
+    capped: Float[Array, "slot"]
+    """Those in which contact moved it less than it would: one of its cluster was at the
+    limit."""
     limited: Float[Array, "slot"]
     """Sum over steps of the share of nodes at a limit."""
     mach: Float[Array, "slot"]
     """Largest Mach number of the fluid at its nodes."""
+    intake: Float[Array, "slot"] | Int[Array, "slot"] | None = None
+    """Energy or quanta that it has taken; None in a world without."""
+    grown: Int[Array, "x"] | None = None
+    """Quanta of food that have grown in each row of cells."""
+    lost: Int[Array, "x"] | None = None
+    """Those that have decayed."""
 
 
 def inhabited(place: World, slots: Slots) -> World:
@@ -212,11 +229,21 @@ def empty(place: World, start: State, one: Occupant, count: int) -> tuple[Slots,
         values=jnp.zeros((count, rows, nodes), dtype) if one.network.recurrent else None,
         energy=start.energy,
         collected=None if start.energy is None else jnp.zeros((count, nodes), dtype),
+        **({} if place.food is None else _fed(place.food, count)),
     )
     slots = Slots(
         jax.tree.map(room, one), jnp.zeros(count, bool), jnp.zeros(count, jnp.int32)
     )
     return slots, living
+
+
+def _fed(food: fields.Food, count: int) -> dict[str, Array]:
+    nothing = jnp.zeros((), jnp.int32)
+    return {
+        "food": jnp.asarray(food.capacity, jnp.int32),
+        "account": jnp.zeros(count, jnp.int32),
+        "time": nothing,
+    }
 
 
 def born(
@@ -226,10 +253,12 @@ def born(
     one: Occupant,
     positions: Float[Array, "node 2"],
     number: Int[Array, ""] | int,
+    account: Int[Array, ""] | int = 0,
 ) -> tuple[Slots, Living]:
     """Return a world in which a slot holds a newborn at `positions`, in cells.
 
-    It is at rest in the shape in which it stands.
+    It is at rest in the shape in which it stands. Quanta of its `account` have to come from
+    elsewhere.
     """
     angles = filaments.edge_angles(positions, one.rods)
     rest = filaments.standing(positions, angles, one.rods, one.layout)
@@ -254,12 +283,22 @@ def born(
         **{name: put(getattr(living, name), rest) for name in ("command", "paced", "rest")},
         values=values,
         collected=collected,
+        account=None if living.account is None else living.account.at[slot].set(account),
     )
 
 
 def removed(slots: Slots, slot: Int[Array, ""] | int) -> Slots:
     """Return slots of which one is empty."""
     return replace(slots, filled=slots.filled.at[slot].set(False))
+
+
+def intake(before: Living, after: Living) -> Array | None:
+    """Return the energy or the quanta that each creature has taken between two states."""
+    if before.account is not None and after.account is not None:
+        return after.account - before.account
+    if before.collected is not None and after.collected is not None:
+        return jnp.sum(after.collected - before.collected, 1)
+    return None
 
 
 class Step(eqx.Module):
@@ -270,6 +309,8 @@ class Step(eqx.Module):
     heading: Float[Array, "slot"]
     work: Float[Array, "slot"]
     contact: Float[Array, "slot"]
+    touched: Float[Array, "slot"]
+    capped: Float[Array, "slot"]
     limited: Float[Array, "slot"]
     mach: Float[Array, "slot"]
 
@@ -281,14 +322,25 @@ def by_slot(world: World, end: State, _: filaments.Rest, pushed: Pushed) -> Step
     weights = world.present.astype(end.positions.dtype)
     points = groups.repeated(layers)
     here = jnp.repeat(world.present, layers)
+    drift = pushed.repelled.drift
     speed = jnp.where(here, jnp.sum(pushed.velocity * pushed.velocity, 1), 0.0)
     return Step(
         *place_of(world, end),
         work=points.total(jnp.sum(pushed.forcing * pushed.target, 1)),
-        contact=groups.mean(jnp.sqrt(jnp.sum(pushed.drift * pushed.drift, 1)), weights),
+        contact=groups.mean(jnp.sqrt(jnp.sum(drift * drift, 1)), weights),
+        touched=_steps(pushed.repelled.touched, groups, weights),
+        capped=_steps(pushed.repelled.limited, groups, weights),
         limited=groups.mean(pushed.held, weights),
         mach=mach(jnp.sqrt(jnp.maximum(points.largest(speed), 0.0))),
     )
+
+
+def _steps(
+    which: Bool[Array, "slot"] | None, groups: Groups, weights: Float[Array, "node"]
+) -> Float[Array, "slot"]:
+    if which is None:
+        return jnp.zeros(groups.count, weights.dtype)
+    return which.astype(weights.dtype)
 
 
 def place_of(world: World, state: State):

@@ -23,7 +23,7 @@ from .model import (
     present_points,
     within_box,
 )
-from .nodes import collect, repel
+from .nodes import Repelled, collect, repel
 
 Points = Float[Array, "point 2"]
 
@@ -41,8 +41,7 @@ class Pushed(eqx.Module):
     """Displacement of the nodes before the projection removes its rigid part."""
     held: Float[Array, "node"]
     """1 where a limit acted."""
-    drift: Float[Array, "node 2"]
-    """Displacement by contact."""
+    repelled: Repelled
     velocity: Points
     """Velocity of the fluid before the step."""
 
@@ -113,8 +112,9 @@ def step(
     moving = fluid.moving(momentum, world.surroundings)
     velocity = coupling.interpolate(moving, coupling.divided(at, rho))
     layers, groups = world.form.layers, world.groups.repeated(world.form.layers)
-    push, drift = repel(world, state.positions)
-    motion = move(world, state, rest, coupling.at_nodes(velocity, layers) + push)
+    repelled = repel(world, state.positions)
+    drift = repelled.drift
+    motion = move(world, state, rest, coupling.at_nodes(velocity, layers) + repelled.push)
     # The fluid is asked to follow the motion by flow and constraints, without `drift`: forcing
     # has neither net force nor torque, so it would remove the rigid motion by contact.
     forced = coupling.multi_direct_forcing(
@@ -142,7 +142,13 @@ def step(
     # Nodes collect where they stood before the step, so the windows `at` serve once more.
     held = _held(motion, forced, groups)
     pushed = Pushed(
-        fluid.fastest(rho, moving), forcing, forced.target, motion.target, held, drift, velocity
+        fluid.fastest(rho, moving),
+        forcing,
+        forced.target,
+        motion.target,
+        held,
+        repelled,
+        velocity,
     )
     end = within_box(world, collect(world, end, at))
     return end, measure(world, end, rest, pushed)
@@ -152,9 +158,9 @@ def step_alone(
     world: World, state: State, rest: filaments.Rest, measure: Observer = measure
 ) -> tuple[State, Any]:
     """Take one step without a fluid: repulsion and constraints move the bodies."""
-    push, drift = repel(world, state.positions)
-    motion = move(world, state, rest, push)
-    positions = state.positions + motion.target + drift
+    repelled = repel(world, state.positions)
+    motion = move(world, state, rest, repelled.push)
+    positions = state.positions + motion.target + repelled.drift
     if world.present is not None:
         positions = jnp.where(world.present[:, None], positions, state.positions)
     end = replace(state, positions=positions, angles=motion.angles)
@@ -162,7 +168,7 @@ def step_alone(
     target = coupling.at_points(motion.target, layers)
     nothing, held = jnp.zeros_like(target), (motion.shortened < 1).astype(positions.dtype)
     still = jnp.zeros((), positions.dtype)
-    pushed = Pushed(still, nothing, target, motion.target, held, drift, nothing)
+    pushed = Pushed(still, nothing, target, motion.target, held, repelled, nothing)
     end = within_box(world, collect(world, end, windows(world, state)))
     return end, measure(world, end, rest, pushed)
 

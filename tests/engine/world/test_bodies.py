@@ -87,7 +87,8 @@ def test_no_body_moves_itself_by_repulsion(name, gradient, float64):
     bent = np.asarray(start.positions) + 0.3 * np.random.default_rng(0).normal(
         size=start.positions.shape
     )
-    push, drift = repel(box, bent)
+    found = repel(box, bent)
+    push, drift = found.push, found.drift
     assert np.abs(push).max() > 0.05
     np.testing.assert_array_equal(drift, 0)
     np.testing.assert_allclose(np.sum(push, 0), 0, atol=1e-13)
@@ -116,7 +117,7 @@ def overlapping(turned, strength, gradient, dtype):
 @pytest.mark.parametrize("turned", [0.0, 0.3, 1.1])
 def test_contact_off_the_centre_turns_rods_by_the_torque_of_the_push(gradient, turned, float64):
     _, box, start = overlapping(turned, 0.2, gradient, float64)
-    drift, x = np.asarray(repel(box, start.positions)[1]), np.asarray(start.positions)
+    drift, x = np.asarray(repel(box, start.positions).drift), np.asarray(start.positions)
     across = np.array([-np.sin(turned), np.cos(turned)])
     for rod, sign in ((slice(NODES), 1), (slice(NODES, None), -1)):
         moved, arms = drift[rod].mean(0), x[rod] - x[rod].mean(0)
@@ -135,7 +136,7 @@ def test_contact_off_the_centre_turns_rods_by_the_torque_of_the_push(gradient, t
 @BOTH
 def test_contact_moves_a_centre_and_turns_an_end_at_most_by_the_limit(gradient, float64):
     _, box, start = overlapping(0.0, 4.0, gradient, float64)
-    drift = np.asarray(repel(box, start.positions)[1])[:NODES]
+    drift = np.asarray(repel(box, start.positions).drift)[:NODES]
     moved = drift.mean(0)
     np.testing.assert_allclose(np.hypot(*moved), 0.1, rtol=1e-9)
     np.testing.assert_allclose(np.hypot(*(drift - moved).T).max(), 0.1, rtol=1e-9)
@@ -152,7 +153,7 @@ def driven_together(gradient, speed, dtype):
     imposed = imposed * np.asarray([[0.0, 1.0]], dtype)
 
     def advance(positions, _):
-        _, drift = world.repel(box, positions)
+        drift = world.repel(box, positions).drift
         return positions + drift + imposed, None
 
     steps = round(10 / speed)
