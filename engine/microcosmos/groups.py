@@ -14,7 +14,7 @@ class Groups(eqx.Module):
     ascending: bool = eqx.field(static=True, default=True)
     """True if nodes stand in the order of their bodies, which makes sums faster."""
 
-    def total(self, values: Float[Array, "node *rest"]) -> Float[Array, "group *rest"]:
+    def total(self, values: Shaped[Array, "node *rest"]) -> Shaped[Array, "group *rest"]:
         """Return the sum over the nodes of each group."""
         if self.count == 1:
             return jnp.sum(values, 0, keepdims=True)
@@ -40,7 +40,7 @@ class Groups(eqx.Module):
             values, self.member, self.count, indices_are_sorted=self.ascending
         )
 
-    def per_node(self, values: Float[Array, "group *rest"]) -> Float[Array, "node *rest"]:
+    def per_node(self, values: Shaped[Array, "group *rest"]) -> Shaped[Array, "node *rest"]:
         """Return, for every node, the value of its group."""
         if self.count == 1:
             return jnp.broadcast_to(values, (len(self.member), *values.shape[1:]))

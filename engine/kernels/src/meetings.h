@@ -145,10 +145,11 @@ class Meetings {
           const float smooth_y = (1 - gy) * wy.smooth[b] + gy * wy.smooth[b + 1];
           const float slope_x = (1 - gx) * wx.slope[a] + gx * wx.slope[a + 1];
           const float slope_y = (1 - gy) * wy.slope[b] + gy * wy.slope[b + 1];
-          to_x[slot] += slope_x * smooth_y, to_y[slot] += smooth_x * slope_y;
-          const float both = smooth_x * smooth_y;
+          const float both = smooth_x * smooth_y, ax = slope_x * smooth_y, ay = smooth_x * slope_y;
+          to_x[slot] += ax, to_y[slot] += ay;
           if (density) density[slot] += both;
-          acts |= both > 0;
+          // The gradient reaches a cell farther than the density.
+          acts |= both > 0 || ax != 0 || ay != 0;
         }
       }
     }

@@ -530,12 +530,12 @@ class Creatures {
         }
     }
     for (int k = 0; k < c.node_count(); k++) {
-      const float size = root(ax[k] * ax[k] + ay[k] * ay[k] + 1e-12f);
+      const float size = root(ax[k] * ax[k] + ay[k] * ay[k] + LEAST);
       ax[k] /= size, ay[k] /= size;
     }
   }
 
-  static constexpr float ASIDE = 2, STREAM = 20;  // As in `world.senses`.
+  static constexpr float ASIDE = 2, STREAM = 20, LEAST = 1e-4f;  // As in `world.senses`.
   const Slots& w_;
   List<std::unique_ptr<Creature>> one_;
   List<Noted> tallies_;

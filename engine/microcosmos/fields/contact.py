@@ -1,8 +1,8 @@
 """Contact between bodies: the density of other bodies at each node, pair by pair.
 
 A pair of nodes acts as on the lattice in `steric`: each is shared by the four cells around it,
-and the density is smoothed by binomial weights. So two nodes more than five cells apart along an
-axis add nothing, and what a body does to another it gets back.
+and the density is smoothed by binomial weights. So two nodes more than five cells apart along
+an axis add nothing, and what a body does to another it gets back.
 """
 
 import equinox as eqx
@@ -56,8 +56,11 @@ def density(
 
 def touching(positions: Vectors, size: tuple[int, int]) -> Bool[Array, "node node"]:
     """Return which nodes act on each other."""
-    (smooth_x, _), (smooth_y, _) = (_along(positions[:, axis], size[axis]) for axis in (0, 1))
-    return smooth_x * smooth_y > 0
+    (smooth_x, slope_x), (smooth_y, slope_y) = (
+        _along(positions[:, axis], size[axis]) for axis in (0, 1)
+    )
+    # The gradient reaches a cell farther than the density.
+    return (smooth_x * smooth_y > 0) | (slope_x * smooth_y != 0) | (smooth_x * slope_y != 0)
 
 
 def _along(places: Float[Array, "node"], cells: int) -> tuple[Pairs, Pairs]:

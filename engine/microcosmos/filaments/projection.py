@@ -79,15 +79,20 @@ def edge_angles(positions: Positions, rods: Rods) -> Angles:
 
 
 def normals(
-    angles: Angles, rods: Rods, nodes: int, present: Bool[Array, "edge"] | None = None
+    angles: Angles,
+    rods: Rods,
+    nodes: int,
+    present: Bool[Array, "edge"] | None = None,
+    least: float = 1e-12,
 ) -> Float[Array, "node 2"]:
-    """Return unit vectors across the filament at its nodes; zero where edges cancel."""
+    """Return unit vectors across the filament at its nodes; zero where edges cancel: where the
+    square of their sum is well below `least`."""
     across = jnp.stack([-jnp.sin(angles), jnp.cos(angles)], 1)
     if present is not None:
         across = jnp.where(present[:, None], across, 0.0)
     total = jnp.zeros((nodes, 2), angles.dtype).at[rods.edges].add(across[:, None])
     # Edges that fold back cancel: the constant keeps value and gradient finite.
-    return total / jnp.sqrt(jnp.sum(total * total, 1, keepdims=True) + 1e-12)
+    return total / jnp.sqrt(jnp.sum(total * total, 1, keepdims=True) + least)
 
 
 def follow_geometry(angles: Angles, positions: Positions, rods: Rods) -> Angles:

@@ -1,22 +1,23 @@
 """Creatures in slots: each with a network, a clock and actuators of its own.
 
-`live` is the reference of the native kernel's call of the same name. In every step each creature
-carries out its last command in closed loop: bent no more than its bound, no faster than its pace,
-and with its lag.
+`live` is the reference of the native kernel's call of the same name. In every step each
+creature carries out its last command in closed loop: bent no more than its bound, no faster
+than its pace, and with its lag.
 """
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jaxtyping import Array, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 from .. import fields
 from ..filaments import Rest
 from ..portable import cosine, sine
-from ..world import Controller, Network, State, World, flow, grown_rods, step
+from ..world import Controller, Network, State, World, flow, grown_nodes, mean, step
 from ..world.senses import Stock, sensed
 from ..world.slots import (
     Living,
@@ -39,10 +40,14 @@ from .development import OUTPUTS, travelling
 from .encoding import Drive, shifted
 
 
-def occupant(driven: Drive, actuators: Actuators | None, period: float, ramp: float) -> Occupant:
-    """Return what a slot holds of a creature alone; `period` and `ramp` are in steps.
+def newborn(
+    driven: Drive, actuators: Actuators | None, period: float, ramp: float
+) -> tuple[Occupant, Float[Array, "node 2"]]:
+    """Return what a slot holds of a creature alone, and the positions of its nodes about their
+    mean, in cells; `period` and `ramp` are in steps.
 
-    Raises `ValueError` for a creature without a network, or whose timer is not periodic.
+    Raises `ValueError` for a creature without a network, whose timer is not periodic, or
+    without a layout.
     """
     controller, place = driven.controller, driven.world
     if not isinstance(controller, Controller) or not isinstance(controller.commands, Network):
@@ -54,27 +59,35 @@ def occupant(driven: Drive, actuators: Actuators | None, period: float, ramp: fl
     if layout is None:
         layout = place.layout if actuators is None else actuators.layout
     if layout is None:
-        raise ValueError("a creature in a slot must have a layout, got swept constraints alone.")
+        raise ValueError("a creature in a slot must have a layout, got none.")
     dtype = network.bias.dtype
-    means = Means(
-        controller.angle_scale,
-        controller.length_scale,
-        0.0 if controller.phase is None else controller.phase,
-        jnp.inf if actuators is None or actuators.max_speed is None else actuators.max_speed,
-        0.0 if actuators is None else actuators.lag,
-        jnp.inf if actuators is None or actuators.max_bend is None else actuators.max_bend,
-        period,
-        ramp,
-    )
-    present = place.present
+
+    def number(value: Any) -> Array:
+        return jnp.asarray(value, dtype)
+
+    def bound(value: Any) -> Array:
+        return number(jnp.inf if value is None else value)
+
+    own = Actuators(layout) if actuators is None else actuators
+    present = grown_nodes(place)
+    middle = mean(driven.start.positions, present)
     return Occupant(
         rods=replace(place.rods, edge_colours=(), joint_colours=()),
-        present=jnp.ones(len(place.groups.member), bool) if present is None else present,
+        present=present,
         layout=layout,
         rest_length=controller.rest_length,
         network=replace(network, timer=jnp.zeros((0, 2), dtype)),
-        means=jax.tree.map(lambda x: jnp.asarray(x, dtype), means),
-    )
+        means=Means(
+            angle_scale=number(controller.angle_scale),
+            length_scale=number(controller.length_scale),
+            phase=number(0.0 if controller.phase is None else controller.phase),
+            max_speed=bound(own.max_speed),
+            lag=number(own.lag),
+            max_bend=bound(own.max_bend),
+            period=number(period),
+            ramp=number(ramp),
+        ),
+    ), driven.start.positions - middle[None]
 
 
 def live(
@@ -85,8 +98,6 @@ def live(
     A creature is commanded at birth and `every` so many steps after.
     """
     box = inhabited(place, slots)
-    if place.layout is None:
-        box = replace(box, rods=grown_rods(box.rods, box.present))
     senses = slots.occupants.network.senses
 
     def advanced(living: Living, _: Any) -> tuple[Living, tuple[Step, Any]]:
@@ -126,17 +137,16 @@ def _fed(box: World, flat: State, living: Living) -> tuple[Living, Any]:
     given, food, account, time = box.food, living.food, living.account, living.time
     if given is None or food is None or account is None or time is None:
         return living, None
-    hungry = box.groups.per_node(account < fields.food.FULL_ACCOUNT)
-    assert box.present is not None
-    food, ate = fields.eaten(food, flat.positions, box.present & hungry, given.bite)
+    hungry = grown_nodes(box) & box.groups.per_node(account < fields.food.FULL_ACCOUNT)
+    left, ate = fields.eaten(food, flat.positions, hungry, given.bite)
     time, nothing = time + 1, jnp.zeros(len(food), food.dtype)
-    food, grown, lost = jax.lax.cond(
+    left, grown, lost = jax.lax.cond(
         time % given.every == 0,
-        lambda: fields.changed(food, given, flow(box, flat), box.surroundings.solid),
-        lambda: (food, nothing, nothing),
+        lambda: fields.changed(left, given, flow(box, flat), box.surroundings.solid),
+        lambda: (left, nothing, nothing),
     )
     account = account + box.groups.total(ate)
-    return replace(living, food=food, account=account, time=time), (grown, lost)
+    return replace(living, food=left, account=account, time=time), (grown, lost)
 
 
 def _act(
@@ -144,7 +154,9 @@ def _act(
 ) -> Living:
     """Return what lives with the rest shapes of a step."""
 
-    def one(occupant: Occupant, memory: tuple[Rest, Rest, Rest], values: Any, age: Any, rows: Any):
+    def one(
+        occupant: Occupant, memory: tuple[Rest, Rest, Rest], values: Any, age: Any, rows: Any
+    ):
         command, paced, rest = memory
         ordered, commanded = _command(occupant, values, age, rows)
         due = age % every == 0
@@ -153,12 +165,29 @@ def _act(
         )
         means, layout = occupant.means, occupant.layout
         paced = towards(paced, command, layout, means.max_speed, occupant.present)
-        return (command, paced, between(rest, paced, 1 / (1 + means.lag))), values
+        shapes = command, paced, between(rest, paced, 1 / (1 + means.lag))
+        edges = _grown_edges(occupant)
+        return tuple(map(partial(_where_grown, occupant, edges), shapes, memory)), values
 
     memory = living.command, living.paced, living.rest
     over = jax.vmap(one, in_axes=(0, 0, 0, 0, 1))
     (command, paced, rest), values = over(occupants, memory, living.values, living.age, rows)
     return replace(living, command=command, paced=paced, rest=rest, values=values)
+
+
+def _grown_edges(one: Occupant) -> Bool[Array, "edge"]:
+    ends = one.rods.edges
+    return jnp.all(one.present[ends], 1) & (ends[:, 0] != ends[:, 1])
+
+
+def _where_grown(one: Occupant, edges: Bool[Array, "edge"], new: Rest, old: Rest) -> Rest:
+    """Return a shape that stays as it was where the body has not grown."""
+    assert one.rods.joints is not None
+    joints = jnp.all(edges[one.rods.joints], 1)
+    if one.layout.bends is not None:
+        joints = joints & one.layout.bends
+    angle = jnp.where(joints, new.angle, old.angle)
+    return Rest(angle, jnp.where(edges, new.length, old.length))
 
 
 def _command(
@@ -184,8 +213,7 @@ def _command(
         one.layout.rest_angle + means.angle_scale * ramp * angle,
         one.rest_length * (1 + means.length_scale * ramp * length),
     )
-    edges = jnp.all(one.present[ends], 1) & (ends[:, 0] != ends[:, 1])
-    return bent(command, one.layout, means.max_bend, edges), values
+    return bent(command, one.layout, means.max_bend, _grown_edges(one)), values
 
 
 def _outputs(network: Network, values: Any, inputs: Points) -> tuple[Points, Any]:

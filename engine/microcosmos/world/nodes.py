@@ -109,10 +109,11 @@ def _met(world: World, positions: Vectors) -> Repelled:
     def farthest(ways: Vectors) -> Float[Array, "group"]:
         return jnp.sqrt(groups.largest(weights * jnp.sum(ways * ways, 1)) + 1e-24)
 
-    touched = groups.largest(jnp.where(near.value > 0, 1, 0)) > 0
+    pairs = _touching(world, positions)
+    touched = jnp.any(pairs & ~jnp.eye(groups.count, dtype=bool), 1)
     longest = jnp.maximum(farthest(moved), farthest(turned))
     factor = jnp.where(touched, jnp.minimum(1.0, contact.limit / longest), 1.0)
-    together = _clusters(world, positions)
+    together = _clusters(pairs)
     factor = jnp.min(jnp.where(together, factor[None], 1.0), 1)
     drift = groups.per_node(factor)[:, None] * (moved + turned)
     limited = touched & (factor < 1)
@@ -126,15 +127,20 @@ def _met(world: World, positions: Vectors) -> Repelled:
     return Repelled(within, drift, touched, limited)
 
 
-def _clusters(world: World, positions: Vectors) -> Bool[Array, "group group"]:
-    """Return which bodies touch each other, directly or by others; each itself."""
+def _touching(world: World, positions: Vectors) -> Bool[Array, "group group"]:
+    """Return which bodies touch each other, and perhaps themselves."""
     member, here, count = world.groups.member, grown_nodes(world), world.groups.count
     touch = fields.touching(positions, world.size) & here[:, None] & here[None]
     pairs = jnp.zeros((count, count), positions.dtype)
     pairs = pairs.at[member[:, None], member[None]].add(touch.astype(positions.dtype))
-    reached = (pairs > 0) | jnp.eye(count, dtype=bool)
-    for _ in range(max(count - 1, 1).bit_length()):  # Each round doubles the ways.
-        ways = reached.astype(positions.dtype)
+    return pairs > 0
+
+
+def _clusters(pairs: Bool[Array, "group group"]) -> Bool[Array, "group group"]:
+    """Return which bodies touch each other, directly or by others; each itself."""
+    reached = pairs | jnp.eye(len(pairs), dtype=bool)
+    for _ in range(max(len(pairs) - 1, 1).bit_length()):  # Each round doubles the ways.
+        ways = reached.astype(jnp.float32)
         reached = jnp.matmul(ways, ways) > 0
     return reached
 

@@ -1,7 +1,6 @@
 """Operands of the native kernel: bodies and controllers as arrays and numbers."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import jax.numpy as jnp
@@ -195,9 +194,16 @@ def slots_of(place: World, slots: Slots) -> tuple[list[Array], Numbers]:
 def _means(slots: Slots) -> Array:
     """Return scales, phase, bounds and clock of each slot, in the kernel's order."""
     means = slots.occupants.means
-    means = replace(means, lag=1 / (1 + means.lag))
-    names = ("angle_scale", "length_scale", "phase", "max_speed", "lag", "max_bend")
-    values = [getattr(means, name) for name in (*names, "period", "ramp")]
+    values = (
+        means.angle_scale,
+        means.length_scale,
+        means.phase,
+        means.max_speed,
+        1 / (1 + means.lag),
+        means.max_bend,
+        means.period,
+        means.ramp,
+    )
     return jnp.stack([jnp.asarray(one, jnp.float32) for one in values], 1)
 
 

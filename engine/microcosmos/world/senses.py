@@ -16,6 +16,9 @@ Nodes = Float[Array, "node"]
 
 ASIDE = 2.0
 """Distance from a node, in cells, at which it senses the energy beside the body."""
+LEAST = 1e-4
+"""Square of the sum of edges' normals below which a node has no sides: in the middle of a star
+rounding would choose them."""
 STREAM = 20.0
 """Sensed per cell a step of water: 1 at the largest speed of a flow that a spec allows."""
 
@@ -50,7 +53,7 @@ def sensed(
         energy = coupling.interpolate((_energy(state),), windows(world, state))
         rows.append(_at_nodes(jnp.tile(energy, (1, 2)), world)[:, 0])
     across = filaments.normals(
-        state.angles, world.rods, len(state.positions), present_edges(world)
+        state.angles, world.rods, len(state.positions), present_edges(world), LEAST
     )
     if "energy_across" in senses:
         left, right = (
@@ -58,7 +61,9 @@ def sensed(
         )
         rows.append(left - right)
     if "energy_along" in senses:
-        ends = [_read(world, state, state.positions[one]) for one in (anchors(world), _last(world))]
+        ends = [
+            _read(world, state, state.positions[one]) for one in (anchors(world), _last(world))
+        ]
         rows.append(world.groups.per_node(ends[0] - ends[1]))
     if {"flow_along", "flow_across"} & set(senses):
         water = STREAM * _water(world, state)

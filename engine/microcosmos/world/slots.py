@@ -16,30 +16,28 @@ from .. import fields, filaments, fluid
 from ..groups import Groups
 from ..units import mach
 from .controller import Network
-from .model import State, World, present_edges, with_bodies
+from .model import State, World, grown_rods, present_edges
 from .stepping import Pushed
-
-Scalar = Float[Array, ""]
 
 
 class Means(eqx.Module):
     """Scales, clock and actuators of one creature. A bound of infinity is none."""
 
-    angle_scale: Scalar
+    angle_scale: Float[Array, "*slot"]
     """Largest angle that is added to a rest angle, rad."""
-    length_scale: Scalar
+    length_scale: Float[Array, "*slot"]
     """Largest share that is added to a rest length."""
-    phase: Scalar
+    phase: Float[Array, "*slot"]
     """Lead of the timer, rad."""
-    max_speed: Scalar
+    max_speed: Float[Array, "*slot"]
     """Cells a step of the fastest node, in the frame that moves and turns with the body."""
-    lag: Scalar
+    lag: Float[Array, "*slot"]
     """Time constant of the first-order response, in steps."""
-    max_bend: Scalar
+    max_bend: Float[Array, "*slot"]
     """Largest angle that is added between any two edges, rad."""
-    period: Scalar
+    period: Float[Array, "*slot"]
     """Steps of a stroke."""
-    ramp: Scalar
+    ramp: Float[Array, "*slot"]
     """Steps in which the stroke grows after birth."""
 
 
@@ -157,12 +155,14 @@ def inhabited(place: World, slots: Slots) -> World:
         bends=None if layout.bends is None else _flat(layout.bends),
         bend=None if layout.bend is None else _flat(layout.bend),
     )
+    present = _flat(one.present & slots.filled[:, None])
     return replace(
         place,
-        rods=rods,
+        # Constraints on what has not grown, or of an empty slot, are not swept.
+        rods=rods if place.layout is not None else grown_rods(rods, present),
         groups=Groups(jnp.repeat(jnp.arange(count, dtype=jnp.int32), nodes), count),
         layout=None if place.layout is None else matched,
-        present=_flat(one.present & slots.filled[:, None]),
+        present=present,
     )
 
 
@@ -231,9 +231,7 @@ def empty(place: World, start: State, one: Occupant, count: int) -> tuple[Slots,
         collected=None if start.energy is None else jnp.zeros((count, nodes), dtype),
         **({} if place.food is None else _fed(place.food, count)),
     )
-    slots = Slots(
-        jax.tree.map(room, one), jnp.zeros(count, bool), jnp.zeros(count, jnp.int32)
-    )
+    slots = Slots(jax.tree.map(room, one), jnp.zeros(count, bool), jnp.zeros(count, jnp.int32))
     return slots, living
 
 
@@ -346,7 +344,8 @@ def _steps(
 def place_of(world: World, state: State):
     """Return the mean of each slot's nodes, its boxes, and the mean direction of its edges."""
     groups, edges = world.groups, present_edges(world)
-    assert world.present is not None and edges is not None
+    assert world.present is not None
+    assert edges is not None
     weights = world.present.astype(state.positions.dtype)
     of_edge = replace(groups, member=groups.member[world.rods.edges[:, 0]])
     heading = of_edge.mean(state.angles, edges.astype(state.angles.dtype))

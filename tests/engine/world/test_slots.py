@@ -1,0 +1,352 @@
+"""Worlds with slots: the kernel against JAX, what changes no bit, and what is conserved."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from crowds import (
+    BODIES,
+    PERIOD,
+    SLOTS,
+    birth,
+    contact,
+    crowd,
+    food,
+    grown,
+    in_jax,
+    in_kernel,
+    newborns,
+    quanta,
+    reordered,
+    same,
+    task_of,
+)
+from kernel_scenes import chain, heap, run, scene, single
+from kernel_scenes import in_jax as roll
+
+from microcosmos import coupling, fields, world
+from microcosmos.genomes.living import newborn
+from microcosmos.world import nodes, slots
+
+kernels = pytest.importorskip(
+    "microcosmos_kernels", reason="microcosmos-kernels is not installed: no compiler?"
+)
+QUICK = ("soft chains", "bodies from plans")
+EVERY = 3
+
+
+def kinds(quick=QUICK):
+    return pytest.mark.parametrize(
+        "name",
+        [pytest.param(one, marks=() if one in quick else pytest.mark.long) for one in BODIES],
+    )
+
+
+def apart(one, other, size):
+    """The largest distance of two sets of places along an axis of a periodic box."""
+    away = np.asarray(one) - np.asarray(other)
+    return np.abs(away - size * np.round(away / size)).max()
+
+
+@kinds()
+def test_the_kernel_lives_as_jax(name):
+    """Floors flip quanta and contact grows differences, so bounds grow with the steps."""
+    place, held, living = crowd(name, count=6)
+    found = expected = living
+    for steps, near in ((10, 5e-5), (10, 2e-4), *((20, 2e-3),) * 4):
+        expected, of_jax = in_jax(place, held, expected, 10, EVERY)
+        found, of_kernel = in_kernel(place, held, found, 10, EVERY)
+        assert apart(found.positions, expected.positions, 48) < near, steps
+        assert np.abs(found.angles - expected.angles).max() < 10 * near
+        for plane, other in zip(found.populations, expected.populations, strict=True):
+            np.testing.assert_allclose(plane, other, atol=10 * near)
+        for shape in ("command", "paced", "rest"):
+            one, other = getattr(found, shape), getattr(expected, shape)
+            np.testing.assert_allclose(one.angle, other.angle, atol=300 * near)
+            np.testing.assert_allclose(one.length, other.length, atol=300 * near)
+        np.testing.assert_array_equal(found.age, expected.age)
+        assert np.abs(found.food - expected.food).max() < 2000 * (1 + 100 * near)
+        np.testing.assert_allclose(found.account, expected.account, atol=3e5 * near)
+        for measure, value in vars(of_jax).items():
+            if measure in ("intake", "grown", "lost", "touched", "capped"):
+                continue
+            np.testing.assert_allclose(getattr(of_kernel, measure), value, atol=20 * near)
+        np.testing.assert_array_equal(of_kernel.touched, of_jax.touched)
+        if near > 1e-3:
+            break
+    assert np.abs(found.positions - living.positions).max() > 0.01
+    assert np.max(of_kernel.intake) > 0
+
+
+@kinds(("chains", "bodies from plans"))
+def test_neither_threads_nor_slots_nor_windows_change_a_bit(name):
+    place, held, living = crowd(name, count=6, seed=1)
+    end, tally = in_kernel(place, held, living, 40, EVERY)
+    for threads in (2, 3, 4):
+        assert same((end, tally), in_kernel(place, held, living, 40, EVERY, None, threads))
+    for instructions in kernels.instruction_sets():
+        assert same((end, tally), in_kernel(place, held, living, 40, EVERY, instructions))
+    split = living
+    for steps in (1, 7, 32):
+        split, _ = in_kernel(place, held, split, steps, EVERY)
+    assert same(split, end)
+    order = np.random.default_rng(2).permutation(SLOTS)
+    moved = in_kernel(place, reordered(held, order), reordered(living, order), 40, EVERY)
+    assert same(moved, (reordered(end, order), reordered(tally, order)))
+    filled = np.flatnonzero(held.filled)
+    few = in_kernel(place, reordered(held, filled), reordered(living, filled), 40, EVERY)
+    assert same(few, (reordered(end, filled), reordered(tally, filled)))
+
+
+def test_empty_slots_stay_as_they_were_and_a_world_may_be_empty():
+    place, held, living = crowd(count=3)
+    nobody = replace(held, filled=jnp.zeros_like(held.filled))
+    end, tally = in_kernel(place, nobody, living, 20)
+    expected, of_jax = in_jax(place, nobody, living, 10)
+    expected, _ = in_jax(place, nobody, expected, 10)
+    assert same(
+        replace(end, **{n: getattr(living, n) for n in ("populations", "food", "time")}), living
+    )
+    assert not np.any(tally.path)
+    assert not np.any(of_jax.path)
+    assert np.abs(end.food - expected.food).max() <= 1
+
+
+@pytest.mark.parametrize("simulate", [in_kernel, pytest.param(in_jax, marks=pytest.mark.long)])
+def test_no_quantum_is_lost_in_windows_with_births_and_deaths(simulate):
+    place, held, living = crowd(count=4)
+    random, before, number = np.random.default_rng(0), quanta(held, living), 4
+    many = newborns("chains", 48, world.SENSES, 6, 0)
+    compiled = None
+    for window in range(60):
+        living, tally = simulate(place, held, living, 5)
+        before += grown(tally)
+        assert quanta(held, living) == before
+        if window == 0:
+            compiled = simulate._cache_size()
+        slot = int(random.integers(SLOTS))
+        if held.filled[slot]:
+            before -= int(living.account[slot])
+            held = slots.removed(held, slot)
+        else:
+            one, positions = many[int(random.integers(6))]
+            place_at = np.float32(np.asarray(positions) + random.uniform(0, 48, 2))
+            account = int(random.integers(2**20))
+            held, living = birth(held, living, slot, one, place_at, number, account)
+            before, number = before + account, number + 1
+    assert number > 10
+    # A birth, a death and another creature in a slot compile nothing.
+    assert simulate._cache_size() == compiled
+
+
+def test_a_great_age_is_no_other_clock():
+    place, held, living = crowd(senses=(), fed=False)
+    grown_up = replace(living, age=jnp.full_like(living.age, int(PERIOD) + 7))
+    old = replace(living, age=grown_up.age + 40_000 * int(PERIOD))
+    young_end, old_end = (in_kernel(place, held, one, 30)[0] for one in (grown_up, old))
+    assert same(replace(old_end, age=young_end.age), young_end)
+
+
+def test_two_creatures_in_one_place_swim_as_one_where_nothing_parts_them():
+    place, held, living = crowd(count=1, touch=False, fed=False, senses=())
+    slot = int(np.flatnonzero(held.filled)[0])
+    one = jax.tree.map(lambda x: x[slot], held.occupants)
+    other = (slot + 1) % SLOTS
+    both, two = birth(held, living, other, one, living.positions[slot], 1, 0)
+    two = replace(two, age=two.age.at[other].set(two.age[slot]))
+    alone, _ = in_kernel(place, held, living, 200)
+    pair, _ = in_kernel(place, both, two, 200)
+    np.testing.assert_array_equal(pair.positions[slot], pair.positions[other])
+    moved = np.abs(alone.positions[slot] - living.positions[slot]).max()
+    assert moved > 0.5
+    np.testing.assert_allclose(pair.positions[slot], alone.positions[slot], atol=1e-3 * moved)
+
+
+def test_copies_in_a_larger_box_do_the_same():
+    place, held, living = crowd(count=2, room=2, senses=("flow_along", "touch"), fed=False)
+    end, _ = in_kernel(place, held, living, 100)
+    large, _, _ = crowd(count=1, room=8, side=96, senses=("flow_along", "touch"), fed=False)
+    copies = jax.tree.map(lambda x: jnp.concatenate([x] * 4), held)
+    copies = replace(copies, number=jnp.arange(8))
+    four = {
+        name: jax.tree.map(lambda x: jnp.concatenate([x] * 4), getattr(living, name))
+        for name in ("positions", "angles", "boxes", "age", "command", "paced", "rest")
+    }
+    shift = 48.0 * np.repeat([[0, 0], [0, 1], [1, 0], [1, 1]], 2, axis=0)
+    four["positions"] = four["positions"] + jnp.float32(shift)[:, None]
+    planes = tuple(jnp.tile(plane, (2, 2)) for plane in living.populations)
+    many = replace(living, populations=planes, **four)
+    found, _ = in_kernel(large, copies, many, 100)
+    for copy in range(4):
+        at = slice(2 * copy, 2 * copy + 2)
+        places = found.positions[at] + 96 * found.boxes[at][:, None]
+        expected = end.positions + 48 * end.boxes[:, None] + np.float32(shift[at])[:, None]
+        np.testing.assert_allclose(places, expected, atol=1e-4)
+
+
+def test_who_is_far_away_changes_no_bit():
+    place, held, living = crowd(count=3, side=128, seed=3)
+    filled = np.flatnonzero(held.filled)
+    where = np.stack([[20.0, 20.0], [24.0, 30.0], [84.0, 84.0]])
+    middles = np.asarray(living.positions).mean(1)
+    for slot, at in zip(filled, where, strict=True):
+        shifted = living.positions[slot] + np.float32(at - middles[slot])[None]
+        living = replace(living, positions=living.positions.at[slot].set(shifted))
+    # Each step a cell further by streaming, and two windows of four cells an iteration.
+    steps = 2
+    with_it, _ = in_kernel(place, held, living, steps)
+    without, _ = in_kernel(place, slots.removed(held, int(filled[2])), living, steps)
+    for slot in filled[:2]:
+        for name in ("positions", "angles", "account"):
+            np.testing.assert_array_equal(
+                getattr(with_it, name)[slot], getattr(without, name)[slot]
+            )
+    assert np.any(with_it.positions[filled[2]] != without.positions[filled[2]])
+
+
+def met(body, size=(48, 48), strength=4.0, **options):
+    box, start, rest = scene(body, size, **options)
+    return replace(box, contact=contact(strength)), start, rest
+
+
+@pytest.mark.parametrize("way", [(0.0, 0.0), (17.3, -20.2)])
+def test_the_density_of_pairs_is_that_of_the_lattice(way):
+    box, start, _ = met(heap(), matched=True)
+    places = start.positions + np.float32(way)[None]
+    at = coupling.windows(places, box.size, coupling.HAT)
+    member = np.asarray(box.groups.member)
+
+    def gradient(body):
+        ones = jnp.asarray(member == body, jnp.float32)[:, None]
+        plane = coupling.spread(ones, at, box.size)[0]
+        return coupling.interpolate(fields.binomial(plane), at)
+
+    of_others = np.where((member == 0)[:, None], gradient(1), gradient(0))
+    found = fields.density(places, box.size, jnp.asarray(member[:, None] != member[None]))
+    assert np.abs(of_others).max() > 0.05
+    np.testing.assert_allclose(found.gradient, of_others, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("body", "options"),
+    [
+        (heap, {"matched": True}),
+        (heap, {}),
+        (heap, {"matched": True, "layers": 2}),
+        (lambda: chain(bend=0.5), {}),
+    ],
+)
+def test_the_kernel_lets_bodies_meet_as_jax(body, options):
+    given = met(body(), **options)
+    end, _ = run(roll, given)
+    found, _ = run(world.native.rollout, given)
+    np.testing.assert_allclose(found.positions, end.positions, atol=5e-4)
+    np.testing.assert_allclose(found.populations, end.populations, atol=3e-5)
+
+
+@pytest.mark.parametrize("strength", [0.5, 4.0, 400.0])
+def test_contact_moves_no_cluster_as_a_whole(strength):
+    box, start, _ = met(heap(), matched=True, strength=strength)
+    found = nodes.repel(box, start.positions)
+    drift = np.asarray(found.drift)
+    assert np.abs(drift).max() > 1e-3
+    np.testing.assert_allclose(drift.sum(0), 0, atol=1e-6)
+    assert bool(found.touched.all())
+    assert bool(found.limited.all()) == (strength > 4)
+    limit = 0.1
+    middle = np.asarray(box.groups.per_node(box.groups.mean(start.positions, jnp.ones(22))))
+    assert np.abs(drift).max() <= 2 * limit + 1e-6, middle
+
+
+def test_an_eater_gets_its_part_rounded_down_and_the_rest_stays():
+    cells = jnp.zeros((8, 8), jnp.int32).at[2, 3].set(10).at[7, 0].set(100).at[0, 0].set(5)
+    places = jnp.float32([[2.2, 3.1], [1.8, 2.9], [2.4, 3.4], [-1.1, 8.2], [7.6, 7.6], [4, 4]])
+    left, ate = fields.eaten(cells, places, jnp.array([1, 1, 1, 1, 1, 1], bool), jnp.float32(7))
+    np.testing.assert_array_equal(ate, [3, 3, 3, 7, 5, 0])
+    assert int(left[2, 3]) == 1
+    assert int(left[7, 0]) == 93
+    assert int(left[0, 0]) == 0
+    assert int(left.sum() + ate.sum()) == int(cells.sum())
+    _, ate = fields.eaten(cells, places, jnp.array([1, 0, 0, 0, 1, 1], bool), jnp.float32(7))
+    np.testing.assert_array_equal(ate, [7, 0, 0, 0, 5, 0])
+
+
+def total(cells):
+    return int(np.asarray(cells, np.int64).sum())
+
+
+def test_food_drifts_with_the_water_and_none_passes_walls():
+    given = replace(food(64, regrowth=0.0, decay=0.0, diffusion=0.0), every=20)
+    x = np.arange(64)
+    blob = np.exp(-((x[:, None] - 20) ** 2 + (x[None] - 30) ** 2) / 50)
+    start = jnp.asarray(2**22 * blob, jnp.int32)
+    velocity = jnp.stack([jnp.full((64, 64), 0.03), jnp.full((64, 64), -0.01)])
+    moved = start
+    for _ in range(20):
+        moved, grew, lost = fields.changed(moved, given, velocity, None)
+        assert not np.any(grew)
+        assert not np.any(lost)
+    assert total(moved) == total(start)
+    middle = [
+        float(
+            (np.asarray(moved, float).sum(1 - axis) * x).sum() / np.asarray(start, float).sum()
+        )
+        for axis in (0, 1)
+    ]
+    # 400 steps; what is rounded towards zero stays behind.
+    np.testing.assert_allclose(middle, [20 + 12, 30 - 4], atol=0.1)
+    solid = jnp.zeros((64, 64), bool).at[26].set(True).at[60].set(True)
+    start = start.at[26].set(0).at[60].set(0)
+    kept = start
+    for _ in range(40):
+        kept, _, _ = fields.changed(
+            kept, replace(given, diffusion=jnp.float32(0.2)), velocity, solid
+        )
+    assert total(kept[61:]) + total(kept[:26]) == total(start[61:]) + total(start[:26])
+    assert not np.any(kept[26])
+
+
+def test_food_regrows_to_its_capacity_and_decays():
+    given = food(16, regrowth=0.5, decay=0.0, diffusion=0.0)
+    still = jnp.zeros((2, 16, 16))
+    left = given.capacity // 5
+    for _ in range(40):
+        left, _, _ = fields.changed(left, given, still, None)
+    assert np.abs(left - given.capacity).max() <= 1
+    gone, grew, lost = fields.changed(
+        left, replace(given, decay=jnp.float32(0.25)), still, None
+    )
+    np.testing.assert_allclose(gone - left, -left / 4 + left / 8, atol=2)
+    assert int(lost.sum() - grew.sum()) == int((left - gone).sum())
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"size": (12, 48)}, "`size` must be at least 16"),
+        (
+            {"steric": fields.Steric(single(4.0), single(0.1), fields.binomial)},
+            "`steric` or `contact`",
+        ),
+    ],
+)
+def test_worlds_in_which_bodies_cannot_meet_are_refused(change, named):
+    box, _, _ = met(heap(), matched=True)
+    with pytest.raises(ValueError, match=named):
+        replace(box, **change)
+
+
+def test_creatures_that_no_slot_holds_are_refused():
+    _, task = task_of("chains")
+    driven = task.encoding.drive(task.world, task.start, newborn_genes(task), None)
+    with pytest.raises(ValueError, match="must have a network"):
+        newborn(replace(driven, controller=None), task.actuators, PERIOD, PERIOD)
+    bare = replace(driven, world=replace(task.world, layout=None), layout=None)
+    with pytest.raises(ValueError, match="must have a layout"):
+        newborn(bare, None, PERIOD, PERIOD)
+
+
+def newborn_genes(task):
+    return jax.jit(lambda key: task.encoding.newcomer(key=key))(jax.random.key(0))
