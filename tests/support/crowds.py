@@ -187,4 +187,4 @@ def quanta(held, living):
 
 def grown(tally):
     """Return the quanta that have grown in a window, less those that are lost."""
-    return int(np.asarray(tally.grown, np.int64).sum() - np.asarray(tally.lost, np.int64).sum())
+    return fields.food.total(tally.grown) - fields.food.total(tally.lost)

@@ -3,7 +3,6 @@
 // simulates N of them from number FIRST on, and prints how many ended finite. A world that is not
 // finite at its end, and whose status does not say so, or that several threads simulate with other
 // results than one, ends the program with status 1.
-#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,34 +10,25 @@
 #include <string>
 
 #include "../src/step.h"
+#include "made.h"
 #include "observed.h"
-#include "random.h"
 
 using namespace microcosmos;
 
 namespace {
 
-constexpr float WILD[] = {NAN,    INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 1e30f,
-                          1e-40f, -1e9f,    4194304,   1e6f,    -0.0f,    -1};
 constexpr int LENGTHS[] = {1, 2, 3, 4, 15, 16, 17, 31, 32, 33, 64, 65, 128, 129};
 constexpr int SIDES[] = {4, 5, 6, 7, 15, 16, 17, 19, 31, 32, 33, 48};
 
-template <class T, size_t N>
-T any(Random& random, const T (&of)[N]) {
-  return of[random.below(int(N))];
-}
-
-class Fuzzed {
+class Fuzzed : Made {
  public:
-  explicit Fuzzed(uint32_t number) : random_{(number + 1) * 2654435761u | 1} {
-    for (int i = 0; i < 8; i++) random_.bits();
-    const int odds[] = {0, 0, 200, 5};
-    odds_ = any(random_, odds);
+  explicit Fuzzed(uint32_t number) : Made(number) {
     r.height = any(random_, SIDES), r.width = any(random_, SIDES), r.steps = random_.below(5);
     r.iterations = 1 + random_.below(4), r.sweeps = random_.below(4);
     r.layers = 1 + random_.below(2), r.projection = Projection(random_.below(3));
     r.delta = Delta(random_.below(3)), r.fixed_magic = coin(), r.fluid = !few();
     r.repelled = coin(), r.energetic = coin();
+    r.paired = r.repelled && r.height >= 16 && r.width >= 16 && coin();
     r.observed = true, r.threads = 1, r.timed = few();
     if (coin())
       filaments();
@@ -85,12 +75,7 @@ class Fuzzed {
 
  private:
   Rollout r = {};
-  Random random_;
   bool developed_ = false;
-  int odds_;  // One number in so many is wild; 0: none.
-  std::vector<std::unique_ptr<float[]>> floats_;
-  std::vector<size_t> counts_;
-  std::vector<std::unique_ptr<int32_t[]>> ints_;
 
   // The bytes of all arrays but the times and the memory.
   std::string all_numbers() {
@@ -100,9 +85,6 @@ class Fuzzed {
       found.append(reinterpret_cast<const char*>(floats_[i].get()), 4 * counts_[i]);
     return found;
   }
-
-  bool coin() { return random_.below(2); }
-  bool few() { return random_.below(8) == 0; }
 
   static bool all_finite(const float* values, int count) {
     return std::all_of(values, values + count, [](float x) { return std::isfinite(x); });
@@ -121,41 +103,14 @@ class Fuzzed {
     return int(shown[STATUS]);
   }
 
-  float* room(size_t count) {
-    floats_.emplace_back(new float[count]());
-    counts_.push_back(count);
-    return floats_.back().get();
-  }
-
-  float* numbers(size_t count, float low, float high) {
-    float* found = room(count);
-    for (size_t i = 0; i < count; i++) found[i] = tamed(random_.between(low, high));
-    return found;
-  }
-
   // Weights along an axis of so many cells, for worlds with repulsion: a few, or one for each.
   float* weights(int cells) {
-    float* found = numbers(r.repelled * 2 * cells, -0.2f, 0.2f);
-    if (r.repelled && coin())
+    const bool smoothed = r.repelled && !r.paired;
+    float* found = numbers(smoothed * 2 * cells, -0.2f, 0.2f);
+    if (smoothed && coin())
       for (int i = 0; i < 2 * cells; i++)
         if (i % cells > 2 && i % cells < cells - 3) found[i] = 0;
     return found;
-  }
-
-  float tamed(float value) {
-    return odds_ && random_.below(odds_) == 0 ? any(random_, WILD) : value;
-  }
-
-  int32_t* indices(const std::vector<int32_t>& given) {
-    ints_.emplace_back(new int32_t[given.size()]);
-    std::copy(given.begin(), given.end(), ints_.back().get());
-    return ints_.back().get();
-  }
-
-  int32_t* indices(size_t count, int least, int limit) {
-    std::vector<int32_t> found(count);
-    for (int32_t& one : found) one = least + random_.below(limit - least);
-    return indices(found);
   }
 
   // Open and closed filaments, each a body and a piece.

@@ -221,7 +221,7 @@ void name_window(Arrays& a, Slots& w) {
   a.out("accounts", &w.end_account, {when(r.fed, S)});
   a.out("time", &r.end_time, {when(r.fed, 1)});
   a.out("measures", &w.tally, {S, TALLY_COUNT});
-  a.out("grown", &r.grown, {when(r.fed, H)}), a.out("lost", &r.lost, {when(r.fed, H)});
+  a.out("grown", &r.grown, {when(r.fed, H), 2}), a.out("lost", &r.lost, {when(r.fed, H), 2});
   a.out("seconds", &r.seconds, {PART_COUNT}), a.out("memory", &r.memory, {1});
   a.end();
 }
@@ -324,8 +324,35 @@ inline bool sound(const Rollout& r) {
          within(r.bends, r.laid_out ? r.joints : 0, 0, 2);
 }
 
+inline bool between(float value, float least, float most) { return value >= least && value <= most; }
+
+// Return whether whole numbers stay whole numbers: of what is rounded, and of sums.
+inline bool sound_food(const Slots& w) {
+  const Rollout& r = w.r;
+  if (!r.fed) return true;
+  const int64_t cells = int64_t(r.height) * r.width;
+  const float *given = r.rations, most = 16777216;
+  return between(given[BITE], 0, most) && between(given[REGROWTH], 0, 1) &&
+         between(given[DECAY], 0, 1) && between(given[FOOD_DIFFUSION], 0, 0.25f) &&
+         given[UNIT] > 0 && given[FULL] > 0 && within(r.capacity, cells, 0, (1 << 24) + 1) &&
+         within(r.food, cells, 0, 1 << 30) && within(w.account, w.slots, 0, int64_t(1) << 31) &&
+         within(r.time, 1, 0, INT32_MAX - int64_t(r.steps));
+}
+
+// Return whether a creature has a clock that goes, and bounds that are not 0, which is none.
+inline bool sound_means(const float* means) {
+  return means[PERIOD] > 0 && means[PERIOD] < 1e30f && means[RAMP] >= 0 && means[MAX_SPEED] > 0 &&
+         means[MAX_BEND] > 0 && between(means[LAG_SHARE], 0, 1);
+}
+
 inline bool sound(const Slots& w) {
-  bool good = within(w.filled, w.slots, 0, 2) && within(w.age, w.slots, 0, int64_t(1) << 31);
+  bool good = within(w.filled, w.slots, 0, 2) && within(w.age, w.slots, 0, int64_t(1) << 31) &&
+              sound_food(w);
+  std::vector<int32_t> numbers;  // The order of creatures, so no two may be equal.
+  for (int s = 0; good && s < w.slots; s++)
+    if (w.filled[s]) numbers.push_back(w.number[s]);
+  std::sort(numbers.begin(), numbers.end());
+  good = good && std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end();
   for (int64_t s = 0; good && s < w.slots; s++) {
     if (!w.filled[s]) continue;
     Rollout r = w.r;
@@ -337,8 +364,16 @@ inline bool sound(const Slots& w) {
     const std::vector<int32_t> member(N, 0);
     r.member = member.data();
     good = sound(r);
-    // A joint that is kept turns by the output at a node that has grown.
-    for (int64_t j = 0; good && j < J; j++) good = !r.bends[j] || r.present[r.joint_node[j]];
+    good = good && sound_means(w.means + s * MEAN_COUNT) &&
+           std::count(r.present, r.present + N, 1) > 0;
+    // A joint that has grown turns by the output at a node that has.
+    auto grown = [&](int32_t edge) {
+      const int32_t one = r.ends[2 * edge], other = r.ends[2 * edge + 1];
+      return one != other && r.present[one] && r.present[other];
+    };
+    for (int64_t j = 0; good && j < J; j++)
+      good = !r.bends[j] || !grown(r.pairs[2 * j]) || !grown(r.pairs[2 * j + 1]) ||
+             r.present[r.joint_node[j]];
   }
   return good;
 }

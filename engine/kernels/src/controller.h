@@ -11,7 +11,7 @@ class Controller {
     nodes_ = r.nodes;
     // In open loop several times are evaluated at once; points fill whole blocks.
     const bool stepwise = r.recurrent || r.senses;
-    times_ = stepwise ? 1 : std::max(1, 512 / std::max(nodes_, 1));
+    times_ = stepwise ? 1 : std::max(1, std::min(r.steps, 512 / std::max(nodes_, 1)));
     const int points = (times_ * nodes_ + BLOCK - 1) / BLOCK * BLOCK;
     if (r.commands == NETWORK) network_.place(points);
     turned_ = Floats(points), stretched_ = Floats(points);

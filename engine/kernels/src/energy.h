@@ -17,7 +17,7 @@ class Energy {
     field_ = Floats(cells), next_ = Floats(cells), taken_ = Floats(cells);
     for (int x = 0; x < l.height; x++)
       std::memcpy(field_ + x * l.wide, r.energy + size_t(x) * l.width, 4 * size_t(l.width));
-    std::memcpy(collected, r.collected, 4 * size_t(r.nodes));
+    std::copy_n(r.collected, r.nodes, (float*)collected);
     for (const Band& band : l.bands) continue_rows(l, band);
   }
 
@@ -79,7 +79,7 @@ class Energy {
     if (!r_.energetic) return;
     for (int x = 0; x < l.height; x++)
       std::memcpy(r_.end_energy + size_t(x) * l.width, field_ + x * l.wide, 4 * size_t(l.width));
-    std::memcpy(r_.end_collected, collected, 4 * size_t(r_.nodes));
+    std::copy_n((float*)collected, r_.nodes, r_.end_collected);
   }
 
  private:

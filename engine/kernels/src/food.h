@@ -16,8 +16,8 @@ class Food {
     for (int x = 0; x < l.height; x++)
       std::memcpy(field_ + x * l.wide, r.food + size_t(x) * l.width, 4 * size_t(l.width));
     for (const Band& band : l.bands) continue_rows(l, band);
-    std::fill_n(r.grown, l.height, 0), std::fill_n(r.lost, l.height, 0);
-    time_ = r.time[0];
+    grown_.assign(l.height, 0), lost_.assign(l.height, 0);
+    time_ = r.time[0], ate_.assign(r.bodies, 0);
   }
 
   // The energy around a point, by the weights of its window.
@@ -51,11 +51,10 @@ class Food {
     });
     me.wait();  // Eaters of all members are counted.
     // What each body ate: its account decides who eats, until all have.
-    List<int32_t>& ate = ate_of_[me.number];
-    ate.assign(me.share.bodies.to - me.share.bodies.from, 0);
+    for (int body = me.share.bodies.from; body < me.share.bodies.to; body++) ate_[body] = 0;
     each_eater(b, accounts, me, [&](int body, int slot) {
       const int at = here(n, l, slot);
-      ate[body - me.share.bodies.from] += share(at, __atomic_load_n(&eaters_[at], __ATOMIC_RELAXED));
+      ate_[body] += share(at, __atomic_load_n(&eaters_[at], __ATOMIC_RELAXED));
     });
     me.wait();  // Nobody takes from a cell before all know their shares.
     each_eater(b, accounts, me, [&](int, int slot) {
@@ -64,11 +63,9 @@ class Food {
       if (count) take(at, count * share(at, count), l);
     });
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
-      accounts[body] += ate[body - me.share.bodies.from];
+      accounts[body] += ate_[body];
     me.wait();
   }
-
-  void team(int members) { ate_of_.resize(members); }
 
   // Let the food of a band change on its own, every so many steps.
   void change(Lattice& l, const Member& me) {
@@ -103,6 +100,11 @@ class Food {
     for (int x = 0; x < l.height; x++)
       std::memcpy(r_.end_food + size_t(x) * l.width, field_ + x * l.wide, 4 * size_t(l.width));
     r_.end_time[0] = time_;
+    for (int x = 0; x < l.height; x++)
+      for (int part : {0, 1}) {
+        r_.grown[2 * x + part] = int32_t(part ? grown_[x] & 4095 : grown_[x] >> 12);
+        r_.lost[2 * x + part] = int32_t(part ? lost_[x] & 4095 : lost_[x] >> 12);
+      }
   }
 
  private:
@@ -178,7 +180,9 @@ class Food {
     float share = velocity * length;
     share = share < 0.25f ? share : 0.25f;
     share = share > -0.25f ? share : -0.25f;
-    return int32_t((share > 0 ? float(one) : float(next)) * share);
+    // Beyond 2^24 quanta the product may be more than a quarter.
+    const int32_t given = int32_t(float(share > 0 ? one : next) * share);
+    return share > 0 ? std::min(given, one / 4) : std::max(given, -(next / 4));
   }
 
   void drift(const Lattice& l, const Band& band, float length) {
@@ -199,7 +203,8 @@ class Food {
     each_cell(l, band, [&](int x, int y, size_t at, size_t up, size_t down, size_t left,
                            size_t right) __attribute__((always_inline)) {
       auto flow = [&](size_t one, size_t next) {
-        return int32_t(float(field_[one] - field_[next]) * share);
+        const int32_t given = int32_t(float(field_[one] - field_[next]) * share);
+        return std::max(std::min(given, field_[one] / 4), -(field_[next] / 4));
       };
       int32_t in_x = flow(up, at), out_x = flow(at, down);
       int32_t in_y = flow(left, at), out_y = flow(at, right);
@@ -238,21 +243,22 @@ class Food {
     for (int x = band.from; x < band.to; x++) {
       int32_t* field = field_ + x * l.wide;
       const int32_t* capacity = r_.capacity + size_t(x) * l.width;
-      int32_t lost = 0, grown = 0;
+      int64_t lost = 0, grown = 0;
       for (int y = 0; y < l.width; y++) {
         const int32_t gone = int32_t(float(field[y]) * decay), left = field[y] - gone;
         const int32_t gap = capacity[y] - left;
         const int32_t more = int32_t(float(gap > 0 ? gap : 0) * regrowth);
         field[y] = left + more, lost += gone, grown += more;
       }
-      r_.lost[x] += lost, r_.grown[x] += grown;
+      lost_[x] += lost, grown_[x] += grown;
     }
   }
 
   const Rollout& r_;
   Array<int32_t> field_, next_, eaters_;
   Floats along_x_, along_y_;
-  List<List<int32_t>> ate_of_;
+  List<int32_t> ate_;           // Of each body in a step.
+  List<int64_t> grown_, lost_;  // In each row.
   int time_ = 0;
 };
 

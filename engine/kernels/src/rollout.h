@@ -42,9 +42,9 @@ enum Parameter {
 };
 // Places of `control`; a bound of 0 is none.
 enum Bound { ANGLE_SCALE, LENGTH_SCALE, PHASE, MAX_SPEED, LAG_SHARE, MAX_BEND, BOUND_COUNT };
-// The same of a slot, with the steps of a stroke and those in which it grows.
 // Places of `rations`.
 enum Ration { BITE, REGROWTH, DECAY, FOOD_DIFFUSION, UNIT, FULL, RATION_COUNT };
+// The bounds of a slot's creature, with the steps of a stroke and those in which it grows.
 enum Mean { PERIOD = BOUND_COUNT, RAMP, MEAN_COUNT };
 // What nodes sense, as sums of these; whole evaluations know the energy alone. The order is that
 // of `world.senses`.
@@ -99,7 +99,7 @@ struct Rollout {
   const float* rations;     // (RATION_COUNT)
   const int32_t* time;      // (1) steps since the start
   int32_t *end_food, *end_time;
-  int32_t *grown, *lost;  // (height) quanta of each row
+  int32_t *grown, *lost;  // (height, 2) quanta of each row: 4096 times the first, and the second
 
   // Weights along each axis that smooth the density of nodes: of smoothing, then of the slope.
   const float* smoothing_x;  // (2, height)

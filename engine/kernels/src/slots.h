@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "actuators.h"
+#include "barrier.h"
 #include "controller.h"
 #include "energy.h"
 #include "food.h"
@@ -215,7 +216,8 @@ class Creature {
   float passed(float period) const {
     const double periods = age / double(period);
     if (!(periods >= 0 && periods < 4e15)) return 0;
-    // The product of the whole number and the period has no more digits than a double.
+    // The product of the whole number and a period of at least 4 steps has no more digits than a
+    // double.
     double rest = age - double(period) * double(int64_t(periods));
     rest = rest < 0 ? rest + period : rest >= period ? rest - period : rest;
     return float(rest / period);
@@ -309,7 +311,7 @@ class Creatures {
 
   // Add up the measures of a step, before bodies are put into other boxes.
   void tally(const Bodies& b, const Nodes& n, const Forcing& f, const Motion& m,
-             const Repulsion& repulsion, const Member& me) {
+             const Repulsion& repulsion, const Barrier& barrier, const Member& me) {
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++) {
       Noted& t = tallies_[body];
       Sum limited, work, touched;
@@ -319,8 +321,10 @@ class Creatures {
         const Ints here = load(n.here + i) > 0.0f;
         const Vec at_limit = load(m.shortened + i) < 1.0f ? all(1) : Vec{};
         limited.add(part, here ? most(pressed, at_limit) : Vec{});
-        if (!r.repelled) return;
-        const Vec x = load(repulsion.drift_x + i), y = load(repulsion.drift_y + i);
+        if (!r.repelled && !r.barred) return;
+        Vec x = {}, y = {};
+        if (r.repelled) x = load(repulsion.drift_x + i), y = load(repulsion.drift_y + i);
+        if (r.barred) x = x + load(barrier.drift_x + i), y = y + load(barrier.drift_y + i);
         touched.add(part, here ? root(x * x + y * y) : Vec{});
       });
       if (r.fluid)
@@ -467,9 +471,8 @@ class Creatures {
       sensed += count;
     }
     if (senses(SENSED_ENERGY_ALONG)) {
-      const int last = slot(count ? count - 1 : 0), first = slot(0);
-      const float rise =
-          count ? energy(n.x[first], n.y[first]) - energy(n.x[last], n.y[last]) : 0;
+      const int last = slot(count - 1), first = slot(0);
+      const float rise = energy(n.x[first], n.y[first]) - energy(n.x[last], n.y[last]);
       for (int k = 0; k < count; k++) sensed[k] = rise;
       sensed += count;
     }

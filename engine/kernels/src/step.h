@@ -65,7 +65,6 @@ class World {
         measuring_(b_, r),
         creatures_(creatures),
         watch_(r.timed ? r.seconds : nullptr) {
-    food_.team(team_.size());
     if (r.soft) softened_ = Floats(r.joints);
     if (r.layers == 2)
       normals_x_ = Floats(b_.node_slots + BLOCK), normals_y_ = Floats(b_.node_slots + BLOCK);
@@ -126,7 +125,7 @@ class World {
         food_.change(l_, me);
       }
       carry(me.share);
-      if (creatures_) creatures_->tally(b_, n_, forcing_, motion_, repulsion_, me);
+      if (creatures_) creatures_->tally(b_, n_, forcing_, motion_, repulsion_, barrier_, me);
       put_within_box(b_, n_, r_, me.share.bodies);
       if (r_.observed) measuring_.record(t, n_, forcing_, motion_, me);
       me.wait();  // A member records nodes of other shares, which the next step moves.
@@ -168,7 +167,7 @@ class World {
       for (int x = band.from; x < band.to; x++)
         std::memcpy(l_.populations + i * l_.plane + x * l_.row,
                     r_.populations[i] + size_t(x) * r_.width, 4 * size_t(r_.width));
-    if (me.first()) std::memcpy(n_.boxes, r_.boxes, 8 * size_t(r_.bodies));
+    if (me.first()) std::copy_n(r_.boxes, 2 * size_t(r_.bodies), (float*)n_.boxes);
     const Range nodes = me.part(r_.nodes), edges = me.part(r_.edges);
     for (int n = nodes.from; n < nodes.to; n++) {
       n_.x[b_.node_slot[n]] = r_.positions[2 * n], n_.y[b_.node_slot[n]] = r_.positions[2 * n + 1];
@@ -226,7 +225,7 @@ class World {
     }
     for (int e = edges.from; e < edges.to; e++) r_.end_angles[e] = n_.angle[b_.edge_slot[e]];
     if (me.first()) {
-      std::memcpy(r_.end_boxes, n_.boxes, 8 * size_t(r_.bodies));
+      std::copy_n((float*)n_.boxes, 2 * size_t(r_.bodies), r_.end_boxes);
       energy_.end(l_), food_.end(l_);
       if (r_.timed) *r_.memory = float(held);
     }

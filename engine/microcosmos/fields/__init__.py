@@ -1,6 +1,6 @@
 """Fields on the grid: repulsion, obstacles, energy, and the density of nodes."""
 
-from . import contact
+from . import contact, food
 from .contact import Contact, Density, density, touching
 from .energy import Energy, Packets, collect, diffuse, packets, placements
 from .food import Food, changed, eaten

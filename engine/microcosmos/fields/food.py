@@ -7,9 +7,12 @@ exact on any machine and in any order; the form has no gradients.
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 Quanta = Int[Array, "x y"]
+Rows = Int[Array, "x 2"]
+"""Quanta of each row: 4096 times the first number, and the second."""
 
 MOST = 2**24
 """Largest capacity of a cell, in quanta: up to here float32 is exact."""
@@ -61,7 +64,7 @@ def eaten(
 
 def changed(
     food: Quanta, given: Food, velocity: Float[Array, "2 x y"], solid: Bool[Array, "x y"] | None
-) -> tuple[Quanta, Int[Array, "x"], Int[Array, "x"]]:
+) -> tuple[Quanta, Rows, Rows]:
     """Return food after it has been carried, has spread, decayed and regrown, with the quanta
     that have grown and that are lost in each row.
 
@@ -80,19 +83,44 @@ def changed(
             flows = []
             for axis, share in enumerate(shares):
                 source = jnp.where(share > 0, food, jnp.roll(food, -1, axis))
-                flows.append(_whole(source, share))
+                flows.append(_within(_whole(source, share), food, axis))
             food = _moved(food, flows, solid)
-    flows = [_whole(food - jnp.roll(food, -1, axis), given.diffusion) for axis in (0, 1)]
+    flows = [
+        _within(_whole(food - jnp.roll(food, -1, axis), given.diffusion), food, axis)
+        for axis in (0, 1)
+    ]
     food = _moved(food, flows, solid)
     lost = _whole(food, given.decay)
     left = food - lost
     grown = _whole(jnp.maximum(given.capacity - left, 0), given.regrowth)
-    return left + grown, jnp.sum(grown, 1), jnp.sum(lost, 1)
+    return left + grown, summed(grown), summed(lost)
+
+
+def summed(quanta: Quanta) -> Rows:
+    """Return the sum over each row; an int32 would be too small for it."""
+    return added(jnp.stack([quanta >> 12, quanta & 4095], 2), 1)
+
+
+def added(rows: Int[Array, "*any 2"], axis: int) -> Rows:
+    """Return sums over an axis of numbers in two parts."""
+    high, low = jnp.moveaxis(jnp.sum(rows, axis), -1, 0)
+    return jnp.stack([high + (low >> 12), low & 4095], -1)
+
+
+def total(rows: Rows) -> int:
+    """Return the quanta of all rows."""
+    high, low = np.asarray(rows, np.int64).reshape(-1, 2).sum(0)
+    return int(4096 * high + low)
 
 
 def _whole(quanta: Quanta, share: Float[Array, "*any"]) -> Quanta:
     """Return a share of quanta, rounded towards zero."""
     return (quanta.astype(share.dtype) * share).astype(quanta.dtype)
+
+
+def _within(flow: Quanta, food: Quanta, axis: int) -> Quanta:
+    """Return a flow of at most a quarter of the giver's quanta, also beyond 2²⁴ of them."""
+    return jnp.clip(flow, -(jnp.roll(food, -1, axis) // 4), food // 4)
 
 
 def _moved(food: Quanta, flows: list[Quanta], solid: Bool[Array, "x y"] | None) -> Quanta:

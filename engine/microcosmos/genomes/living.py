@@ -118,7 +118,7 @@ def live(
     after = _chosen(slots.filled, after, living)
     tally = _added_up(place, slots, before, seen)
     if changes is not None:
-        grown, lost = (jnp.sum(one, 0) for one in changes)
+        grown, lost = (fields.food.added(one, 0) for one in changes)
         tally = replace(tally, grown=grown, lost=lost)
     return after, replace(tally, intake=intake(living, after))
 
@@ -139,7 +139,7 @@ def _fed(box: World, flat: State, living: Living) -> tuple[Living, Any]:
         return living, None
     hungry = grown_nodes(box) & box.groups.per_node(account < fields.food.FULL_ACCOUNT)
     left, ate = fields.eaten(food, flat.positions, hungry, given.bite)
-    time, nothing = time + 1, jnp.zeros(len(food), food.dtype)
+    time, nothing = time + 1, jnp.zeros((len(food), 2), food.dtype)
     left, grown, lost = jax.lax.cond(
         time % given.every == 0,
         lambda: fields.changed(left, given, flow(box, flat), box.surroundings.solid),

@@ -76,7 +76,12 @@ class World(eqx.Module):
     """Nodes that have grown; None: all. The others rest and do nothing; their constraints have
     stiffness 0."""
 
+    order: Int[Array, "group"] | None = None
+    """The order in which bodies in exactly one place are parted; None: that of the groups."""
+
     def __check_init__(self):
+        if self.food is not None and self.food.carried and not self.form.fluid:
+            raise ValueError("`food` must not be `carried` in a world without a fluid.")
         if self.contact is None:
             return
         if self.steric is not None:

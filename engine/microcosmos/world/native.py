@@ -230,7 +230,7 @@ def _live(
     count, rows = len(slots.filled), 0 if place.food is None else place.size[0]
     results = call(
         register("live", instruction_set),
-        [*shapes, (count, TALLY), (rows,), (rows,), (len(PARTS),), (1,)],
+        [*shapes, (count, TALLY), (rows, 2), (rows, 2), (len(PARTS),), (1,)],
         operands,
         options,
         whole={*WHOLE, len(shapes) + 1, len(shapes) + 2},

@@ -175,8 +175,8 @@ def _parted(world: World, positions: Vectors) -> Vectors:
     grown = has_grown(world)
     if grown is not None:  # Bodies of which nothing has grown stand nowhere.
         same = same & grown[:, None] & grown[None]
-    body = jnp.arange(len(at))
-    count, before = jnp.sum(same, 1), jnp.sum(same & (body[None] < body[:, None]), 1)
+    order = jnp.arange(len(at)) if world.order is None else world.order
+    count, before = jnp.sum(same, 1), jnp.sum(same & (order[None] < order[:, None]), 1)
     # Along a filament they would slide over each other: few have just this direction.
     turn = 1 + 2 * jnp.pi * before.astype(at.dtype) / jnp.maximum(count, 1).astype(at.dtype)
     way = TIE * jnp.stack([jnp.cos(turn), jnp.sin(turn)], 1)

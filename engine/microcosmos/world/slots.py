@@ -121,9 +121,9 @@ class Tally(eqx.Module):
     """Largest Mach number of the fluid at its nodes."""
     intake: Float[Array, "slot"] | Int[Array, "slot"] | None = None
     """Energy or quanta that it has taken; None in a world without."""
-    grown: Int[Array, "x"] | None = None
+    grown: fields.food.Rows | None = None
     """Quanta of food that have grown in each row of cells."""
-    lost: Int[Array, "x"] | None = None
+    lost: fields.food.Rows | None = None
     """Those that have decayed."""
 
 
@@ -163,6 +163,7 @@ def inhabited(place: World, slots: Slots) -> World:
         groups=Groups(jnp.repeat(jnp.arange(count, dtype=jnp.int32), nodes), count),
         layout=None if place.layout is None else matched,
         present=present,
+        order=slots.number,
     )
 
 
