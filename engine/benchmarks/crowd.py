@@ -1,28 +1,43 @@
 """Many creatures in one fluid: the time of a step of the kernel beside that of its fluid.
 
-Filaments of 24 nodes without senses bend in travelling waves and repel each other. Prints
-tables and asserts nothing; worlds and numbers of threads take turns.
+Filaments of 24 nodes with networks of their own swim in slots, in closed loop. They touch each
+other, sense, and eat. Prints tables and asserts nothing; worlds and numbers of threads take
+turns.
 """
 
 import os
 import statistics
+import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import timing
-from kernel import STIFF, Scene, program, scene
 
-from microcosmos import bodies, device, fields, filaments, groups, world
+from microcosmos import device, fields, spec, world
+from microcosmos.build import build_task
+from microcosmos.genomes.living import newborn
+from microcosmos.world import slots
 
 REPEATS = 9
-NODES = 24
 CROWDS = ((256, 40, 200), (512, 167, 60), (1024, 670, 20))
-"""Cells along each side, bodies, and steps of a repeat."""
+"""Cells along each side, creatures, and steps of a repeat."""
 THREADS = (1, 2)
-STRENGTH, LIMIT = 4.0, 0.1
+EVERY, PERIOD = 4, 200.0
+ROOM = (24, 64)
+BIRTHS = 50
+
+
+@dataclass
+class Crowd:
+    """A world with slots, each of which holds a creature."""
+
+    place: world.World
+    slots: slots.Slots
+    living: slots.Living
 
 
 def main() -> None:
@@ -31,8 +46,9 @@ def main() -> None:
         return
     threads = [one for one in THREADS if one <= (os.cpu_count() or 1)]
     runs = {
-        (side, count, number): parts_of(crowd(side, count, steps), number)
+        (side, count, alive, number): parts_of(crowd(side, count, alive=alive), steps, number)
         for side, count, steps in CROWDS
+        for alive in (False, True)
         for number in threads
     }
     rounds = [{name: run() for name, run in runs.items()} for _ in range(REPEATS + 1)]
@@ -42,66 +58,116 @@ def main() -> None:
         f"{device.device_kind()}; load {os.getloadavg()[0]:.1f}; {REPEATS} interleaved repeats"
     )
     print_steps(times, threads)
-    print_parts(times)
+    print_parts({name: found for name, found in times.items() if name[2]})
+    print_birth(crowd(*CROWDS[0][:2], alive=True))
 
 
-def crowd(side: int, count: int, steps: int) -> Scene:
-    """Return filaments in rows and columns, each turned at random, that repel each other."""
-    one, random = bodies.chain(NODES, 1.0, **STIFF), np.random.default_rng(0)
-    columns = int(np.ceil(np.sqrt(count)))
-    places = (np.stack(np.divmod(np.arange(count), columns), 1) + 0.5) * side / columns
-    turns = random.uniform(0, 2 * np.pi, count)
-    body = bodies.combined(
-        [bodies.placed(one, tuple(at), turn) for at, turn in zip(places, turns, strict=True)]
+def crowd(side: int, count: int, *, alive: bool) -> Crowd:
+    """Return filaments in rows and columns, each turned at random; `alive`: they touch, sense
+    and eat too."""
+    scene = spec.Scene.model_validate(
+        {"world": {"width": side, "height": side}, "body": {"nodes": 24}}
     )
-    made = scene(body, (side, side), steps)
-    angles, nothing = (
-        filaments.edge_angles(made.start.positions, made.box.rods),
-        jnp.zeros((0, 0)),
+    task = build_task(scene, room=ROOM)
+    senses = tuple(one for one in world.SENSES if alive)
+    encoding = task.encoding
+    encoding = replace(encoding, controls=replace(encoding.controls, senses=senses))
+    place = replace(task.world, food=food(side), contact=contact()) if alive else task.world
+
+    @jax.jit
+    def made(key):
+        driven = encoding.drive(task.world, task.start, encoding.newcomer(key=key), None)
+        return newborn(driven, task.actuators, PERIOD, PERIOD)
+
+    random, columns = np.random.default_rng(0), int(np.ceil(np.sqrt(count)))
+    held, living = slots.empty(place, task.start, made(jax.random.key(0))[0], count)
+    birth = jax.jit(slots.born)
+    for number in range(count):
+        one, positions = made(jax.random.key(number))
+        turn = random.uniform(0, 2 * np.pi)
+        c, s = np.cos(turn), np.sin(turn)
+        middle = (np.array(divmod(number, columns)) + 0.5) * side / columns
+        at = np.float32(np.asarray(positions) @ np.array([[c, s], [-s, c]]) + middle)
+        held, living = birth(held, living, number, one, at, number)
+    return Crowd(place, held, living)
+
+
+def contact() -> fields.Contact:
+    return fields.Contact(jnp.float32(4.0), jnp.float32(0.1))
+
+
+def food(side: int) -> fields.Food:
+    numbers = {"bite": 2e4, "regrowth": 2e-4, "decay": 0.0, "diffusion": 0.01}
+    capacity = jnp.full((side, side), 2**20, jnp.int32)
+    scales = {"unit": 2.0**20, "full": 2.0**26}
+    given = {name: jnp.float32(value) for name, value in (numbers | scales).items()}
+    return fields.Food(capacity, **given)
+
+
+def parts_of(one: Crowd, steps: int, threads: int) -> Callable[[], np.ndarray]:
+    """Return a program for the seconds that each part of a step takes, with those of the whole
+    call as the last; each call goes on from the one before."""
+    run = jax.jit(
+        partial(world.native.part_seconds_of_slots, steps=steps, every=EVERY, threads=threads)
     )
-    # The kernel needs no matrices, which would have the square of all nodes.
-    layout = filaments.Layout(
-        angle=angles,
-        rest_angle=jnp.asarray(body.rest_angle, jnp.float32),
-        turned=nothing,
-        placed=nothing,
-        pieces=groups.Groups(made.box.groups.member, body.count),
-    )
-    steric = fields.Steric(jnp.float32(STRENGTH), jnp.float32(LIMIT), fields.binomial)
-    return replace(made, box=replace(made.box, layout=layout, steric=steric))
+    state = [one.living]
+
+    def measured() -> np.ndarray:
+        start = time.perf_counter()
+        state[0], seconds = jax.block_until_ready(run(one.place, one.slots, state[0]))
+        return np.append(seconds, time.perf_counter() - start) / steps
+
+    return measured
 
 
-def parts_of(one: Scene, threads: int) -> Callable[[], np.ndarray]:
-    """Return a program for the seconds that each part of a step takes."""
-    run = program(one, partial(world.native.part_seconds, threads=threads))
-    return lambda: np.asarray(run()) / len(one.rest.angle)
-
-
-Times = dict[tuple[int, int, int], list[np.ndarray]]
+Times = dict[tuple[int, int, bool, int], list[np.ndarray]]
 
 
 def print_steps(times: Times, threads: list[int]) -> None:
     fluid, rows = world.native.PARTS.index("fluid"), []
-    for (side, count, number), found in times.items():
-        step = statistics.median(one.sum() for one in found)
+    for (side, count, alive, number), found in times.items():
+        step = statistics.median(one[:-1].sum() for one in found)
+        whole = statistics.median(one[-1] for one in found)
         of_fluid = statistics.median(one[fluid] for one in found)
-        ratio = statistics.median(one.sum() / one[fluid] for one in found)
-        alone = times[side, count, threads[0]]
-        gain = statistics.median(a.sum() / b.sum() for a, b in zip(alone, found, strict=True))
-        row = (f"{side}², {count} bodies", str(number), f"{step:.0f}", f"{of_fluid:.0f}")
-        rows.append((*row, f"{ratio:.2f}", f"{gain:.2f}"))
-    head = ("world", "threads", "step", "fluid", "step / fluid", "gain by threads")
-    timing.print_table("µs a step", head, rows)
+        ratio = statistics.median(one[:-1].sum() / one[fluid] for one in found)
+        alone = times[side, count, alive, threads[0]]
+        gain = statistics.median(
+            a[:-1].sum() / b[:-1].sum() for a, b in zip(alone, found, strict=True)
+        )
+        numbers = (f"{one:.0f}" for one in (whole, step, of_fluid))
+        row = (f"{side}², {count} creatures", "all" if alive else "swim", str(number))
+        rows.append((*row, *numbers, f"{ratio:.2f}", f"{gain:.2f}"))
+    head = ("world", "they", "threads", "call", "step", "fluid", "step / fluid", "gain")
+    timing.print_table("µs a step; all: they touch, sense and eat too", head, rows)
 
 
 def print_parts(times: Times) -> None:
-    head = ("", *(f"{side}², {number} threads" for side, _, number in times))
+    head = ("", *(f"{side}², {number} threads" for side, _, _, number in times))
     medians = [np.median(found, 0) for found in times.values()]
     rows = [
         (name, *(f"{one[place]:.0f}" for one in medians))
         for place, name in enumerate(world.native.PARTS)
     ]
     timing.print_table("µs of a step, by part", head, rows)
+
+
+def print_birth(one: Crowd) -> None:
+    """Print the time of a birth and of a death, which compile nothing."""
+    birth, death = jax.jit(slots.born), jax.jit(slots.removed)
+    occupant = jax.tree.map(lambda x: x[0], one.slots.occupants)
+    held, living = one.slots, one.living
+    times: dict[str, list[float]] = {"birth": [], "death": []}
+    for number in range(BIRTHS + 1):
+        slot, start = number % len(held.filled), time.perf_counter()
+        held = jax.block_until_ready(death(held, slot))
+        between = time.perf_counter()
+        held, living = jax.block_until_ready(
+            birth(held, living, slot, occupant, living.positions[1], 10**6 + number)
+        )
+        times["death"].append(between - start)
+        times["birth"].append(time.perf_counter() - between)
+    rows = [(name, f"{1e6 * statistics.median(all_[1:]):.0f}") for name, all_ in times.items()]
+    timing.print_table("µs of one", ("", "time"), rows)
 
 
 if __name__ == "__main__":

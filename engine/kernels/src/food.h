@@ -8,11 +8,16 @@ namespace microcosmos::ISA {
 
 class Food {
  public:
-  Food(const Rollout& r, const Lattice& l) : r_(r) {
+  Food(const Bodies& b, const Rollout& r, const Lattice& l, int members)
+      : r_(r), alone_(members == 1) {
     if (!r.fed) return;
+    cell_x_ = Array<int32_t>(b.node_slots + BLOCK), cell_y_ = Array<int32_t>(b.node_slots + BLOCK);
+    share_ = Floats(b.node_slots + BLOCK);
     const size_t cells = size_t(l.height + 1) * l.wide;
-    field_ = Array<int32_t>(cells), next_ = Array<int32_t>(cells), eaters_ = Array<int32_t>(cells);
-    if (r.carried) along_x_ = Floats(cells), along_y_ = Floats(cells);
+    field_ = Array<int32_t>(cells), eaters_ = Array<int32_t>(cells);
+    flow_x_ = Array<int32_t>(cells), flow_y_ = Array<int32_t>(cells);
+    for (Floats* one : {&along_x_, &along_y_, &share_x_, &share_y_})
+      *one = Floats(r.carried ? cells : 0);
     for (int x = 0; x < l.height; x++)
       std::memcpy(field_ + x * l.wide, r.food + size_t(x) * l.width, 4 * size_t(l.width));
     for (const Band& band : l.bands) continue_rows(l, band);
@@ -46,20 +51,31 @@ class Food {
 
   // Eat at the nodes of the bodies of a share, where they stand; `accounts` are by body.
   void eat(const Bodies& b, const Nodes& n, const Lattice& l, int32_t* accounts, const Member& me) {
+    // The cell at a node: the nearest.
+    first_cells(me.share.nodes, n.x, share_, cell_x_, l.height, -0.5f);
+    first_cells(me.share.nodes, n.y, share_, cell_y_, l.width, -0.5f);
     each_eater(b, accounts, me, [&](int, int slot) {
-      __atomic_fetch_add(&eaters_[here(n, l, slot)], 1, __ATOMIC_RELAXED);
+      int32_t& count = eaters_[here(l, slot)];
+      if (alone_)
+        count++;
+      else
+        __atomic_fetch_add(&count, 1, __ATOMIC_RELAXED);
     });
     me.wait();  // Eaters of all members are counted.
     // What each body ate: its account decides who eats, until all have.
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++) ate_[body] = 0;
     each_eater(b, accounts, me, [&](int body, int slot) {
-      const int at = here(n, l, slot);
+      const int at = here(l, slot);
       ate_[body] += share(at, __atomic_load_n(&eaters_[at], __ATOMIC_RELAXED));
     });
     me.wait();  // Nobody takes from a cell before all know their shares.
     each_eater(b, accounts, me, [&](int, int slot) {
-      const int at = here(n, l, slot);
-      const int count = __atomic_exchange_n(&eaters_[at], 0, __ATOMIC_RELAXED);
+      const int at = here(l, slot);
+      int32_t count;
+      if (alone_)
+        count = eaters_[at], eaters_[at] = 0;
+      else
+        count = __atomic_exchange_n(&eaters_[at], 0, __ATOMIC_RELAXED);
       if (count) take(at, count * share(at, count), l);
     });
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++)
@@ -77,16 +93,10 @@ class Food {
         me.wait();  // Faces have cells of two bands.
         // So long that water of 1/16 cells a step crosses a quarter of a cell.
         const int turns = (r_.food_every + 3) / 4;
-        const float length = float(r_.food_every) / float(turns);
-        for (int turn = 0; turn < turns; turn++) {
-          drift(l, band, length);
-          swap(me);
-        }
+        find_shares(l, band, float(r_.food_every) / float(turns));
+        for (int turn = 0; turn < turns; turn++) move(l, band, me, true);
       }
-      if (r_.rations[FOOD_DIFFUSION] > 0) {
-        spread_out(l, band);
-        swap(me);
-      }
+      if (r_.rations[FOOD_DIFFUSION] > 0) move(l, band, me, false);
       regrow(l, band);
       continue_rows(l, band);
     }
@@ -118,11 +128,8 @@ class Food {
           work(r_.member[node], b.node_slot[node]);
   }
 
-  // The cell at a node: the nearest.
-  int here(const Nodes& n, const Lattice& l, int slot) const {
-    float share;
-    const int x = cell(n.x[slot] + 0.5f, l.height, share);
-    return int(x * l.wide) + cell(n.y[slot] + 0.5f, l.width, share);
+  int here(const Lattice& l, int slot) const {
+    return cell_x_[slot] * int(l.wide) + cell_y_[slot];
   }
 
   int32_t share(int at, int count) const {
@@ -136,12 +143,6 @@ class Food {
     if (y < 3) field_[at + l.width] = field_[at];
   }
 
-  void swap(const Member& me) {
-    me.wait();  // Neighbours of a band read the old field.
-    if (me.first()) std::swap(field_, next_);
-    me.wait();
-  }
-
   // Windows that cross the edge of a row continue beyond it.
   void continue_rows(const Lattice& l, const Band& band) {
     for (int x = band.from; x < band.to; x++)
@@ -150,90 +151,116 @@ class Food {
 
   bool solid(int x, int y) const { return r_.walled && r_.walls[size_t(x) * r_.width + y]; }
 
+  // Call work(place, lanes) for each vector of a row that begins at a place; the last may be cut.
+  template <class Work>
+  INLINE static void each_vector(const Lattice& l, int x, Work work) {
+    const size_t row = size_t(x) * l.wide;
+    for (int y = 0; y < l.width; y += LANES) work(row + y, std::min(LANES, l.width - y));
+  }
+
+  INLINE static Ints load_whole(const int32_t* from) {
+    Ints v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
+  }
+  // Store some lanes: what stands beyond a row belongs to others.
+  template <class V, class T>
+  INLINE static void store_some(T* to, V v, int lanes) {
+    if (lanes == LANES)
+      std::memcpy(to, &v, sizeof v);
+    else
+      std::memcpy(to, &v, 4 * size_t(lanes));
+  }
+
   // The velocity of the fluid in the cells of a band.
   void measure(const Lattice& l, const Band& band) {
     for (int x = band.from; x < band.to; x++) {
-      const float* f[9];
-      for (int i = 0; i < 9; i++) f[i] = l.populations + i * l.plane + x * l.row;
-      float *to_x = along_x_ + x * l.wide, *to_y = along_y_ + x * l.wide;
-      for (int y = 0; y < l.width; y++) {
-        const float across = f[5][y] - f[6][y], along = f[7][y] - f[8][y];
-        float jx = (f[1][y] - f[2][y]) + (across + along);
-        float jy = (f[3][y] - f[4][y]) + (across - along);
-        if (!solid(x, y)) {
-          if (r_.driven) jx += 0.5f * r_.uniform_force[0], jy += 0.5f * r_.uniform_force[1];
-          if (r_.varied)
-            jx += 0.5f * r_.force_x[size_t(x) * l.width + y],
-                jy += 0.5f * r_.force_y[size_t(x) * l.width + y];
-        }
-        const float straight = (f[1][y] + f[2][y]) + (f[3][y] + f[4][y]);
-        const float density =
-            1.0f + (f[0][y] + straight + ((f[5][y] + f[6][y]) + (f[7][y] + f[8][y])));
-        to_x[y] = jx / density, to_y[y] = jy / density;
-      }
+      const float* from = l.populations + x * l.row;
+      each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
+        const size_t y = at - size_t(x) * l.wide;
+        Vec f[9];
+        for (int i = 0; i < 9; i++) f[i] = load(from + i * l.plane + y);
+        const Vec across = f[5] - f[6], along = f[7] - f[8];
+        Vec jx = (f[1] - f[2]) + (across + along), jy = (f[3] - f[4]) + (across - along);
+        // Half a step of the surroundings' force has acted; see `moments`.
+        if (l.drive == UNIFORM) jx = jx + 0.5f * l.push_x, jy = jy + 0.5f * l.push_y;
+        if (l.drive == VARIED)
+          jx = jx + 0.5f * load(l.pushes_x + x * l.row + y),
+          jy = jy + 0.5f * load(l.pushes_y + x * l.row + y);
+        const Vec volume =
+            1.0f / (1.0f + (f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]))));
+        store_some(along_x_ + at, jx * volume, lanes), store_some(along_y_ + at, jy * volume, lanes);
+      });
+      along_y_[x * l.wide + l.width] = along_y_[x * l.wide];
     }
   }
 
-  // Quanta that the water carries from one cell to the next in so many steps, by the mean of their
-  // velocities: at most a quarter of a cell's, so that none gives more than it has.
-  INLINE static int32_t carried(int32_t one, int32_t next, float velocity, float length) {
-    float share = velocity * length;
-    share = share < 0.25f ? share : 0.25f;
-    share = share > -0.25f ? share : -0.25f;
-    // Beyond 2^24 quanta the product may be more than a quarter.
-    const int32_t given = int32_t(float(share > 0 ? one : next) * share);
-    return share > 0 ? std::min(given, one / 4) : std::max(given, -(next / 4));
-  }
-
-  void drift(const Lattice& l, const Band& band, float length) {
-    each_cell(l, band, [&](int x, int y, size_t at, size_t up, size_t down, size_t left,
-                           size_t right) __attribute__((always_inline)) {
-      auto flow = [&](const Floats& along, size_t one, size_t next) {
-        return carried(field_[one], field_[next], 0.5f * (along[one] + along[next]), length);
-      };
-      int32_t in_x = flow(along_x_, up, at), out_x = flow(along_x_, at, down);
-      int32_t in_y = flow(along_y_, left, at), out_y = flow(along_y_, at, right);
-      if (r_.walled) keep_out(l, x, y, in_x, out_x, in_y, out_y);
-      next_[at] = field_[at] + ((in_x - out_x) + (in_y - out_y));
-    });
-  }
-
-  void spread_out(const Lattice& l, const Band& band) {
-    const float share = r_.rations[FOOD_DIFFUSION];
-    each_cell(l, band, [&](int x, int y, size_t at, size_t up, size_t down, size_t left,
-                           size_t right) __attribute__((always_inline)) {
-      auto flow = [&](size_t one, size_t next) {
-        const int32_t given = int32_t(float(field_[one] - field_[next]) * share);
-        return std::max(std::min(given, field_[one] / 4), -(field_[next] / 4));
-      };
-      int32_t in_x = flow(up, at), out_x = flow(at, down);
-      int32_t in_y = flow(left, at), out_y = flow(at, right);
-      if (r_.walled) keep_out(l, x, y, in_x, out_x, in_y, out_y);
-      next_[at] = field_[at] + ((in_x - out_x) + (in_y - out_y));
-    });
-  }
-
-  // Nothing passes into or out of walls.
-  void keep_out(const Lattice& l, int x, int y, int32_t& in_x, int32_t& out_x, int32_t& in_y,
-                int32_t& out_y) const {
-    const int H = l.height, W = l.width;
-    const bool wall = solid(x, y);
-    if (wall || solid(x ? x - 1 : H - 1, y)) in_x = 0;
-    if (wall || solid(x + 1 < H ? x + 1 : 0, y)) out_x = 0;
-    if (wall || solid(x, y ? y - 1 : W - 1)) in_y = 0;
-    if (wall || solid(x, y + 1 < W ? y + 1 : 0)) out_y = 0;
-  }
-
-  template <class Work>
-  INLINE void each_cell(const Lattice& l, const Band& band, Work work) const {
-    const int H = l.height, W = l.width;
+  // The share of the giver's quanta that the water carries through each face in so many steps, by
+  // the mean of the velocities beside it: at most a quarter, so that none gives more than it has.
+  void find_shares(const Lattice& l, const Band& band, float length) {
     for (int x = band.from; x < band.to; x++) {
-      const size_t row = size_t(x) * l.wide, up = size_t(x ? x - 1 : H - 1) * l.wide,
-                   down = size_t(x + 1 < H ? x + 1 : 0) * l.wide;
-      work(x, 0, row, up, down, row + W - 1, row + 1);
-      for (int y = 1; y < W - 1; y++)
-        work(x, y, row + y, up + y, down + y, row + y - 1, row + y + 1);
-      work(x, W - 1, row + W - 1, up + W - 1, down + W - 1, row + W - 2, row);
+      const ptrdiff_t down = below(l, x);
+      each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
+        auto share = [&](const Floats& along, ptrdiff_t next) __attribute__((always_inline)) {
+          const Vec far = 0.5f * (load(along + at) + load(along + at + next)) * length;
+          return least(most(far, all(-0.25f)), all(0.25f));
+        };
+        store_some(share_x_ + at, share(along_x_, down), lanes);
+        store_some(share_y_ + at, share(along_y_, 1), lanes);
+      });
+    }
+  }
+
+  // Move food from cell to cell, carried by the water or from more to less.
+  void move(const Lattice& l, const Band& band, const Member& me, bool carries) {
+    me.wait();  // Cells of neighbouring bands are as they were after the last turn.
+    for (int x = band.from; x < band.to; x++) {
+      const ptrdiff_t down = below(l, x);
+      each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
+        store_some(flow_x_ + at, flow(at, down, share_x_, carries), lanes);
+        store_some(flow_y_ + at, flow(at, 1, share_y_, carries), lanes);
+      });
+      if (r_.walled) keep_out(l, x);
+    }
+    me.wait();  // All flows are known, and no cell has changed.
+    for (int x = band.from; x < band.to; x++) {
+      const size_t row = size_t(x) * l.wide, up = size_t(x ? x - 1 : l.height - 1) * l.wide;
+      // The last cell of a row gives to the first.
+      const int32_t around = flow_y_[row + l.width - 1];
+      field_[row] = field_[row] - flow_y_[row] + around - flow_x_[row] + flow_x_[up];
+      for (int y = 1; y < l.width; y++)
+        field_[row + y] = field_[row + y] - flow_y_[row + y] + flow_y_[row + y - 1] -
+                          flow_x_[row + y] + flow_x_[up + y];
+    }
+    continue_rows(l, band);
+  }
+
+  static ptrdiff_t below(const Lattice& l, int x) {
+    return x + 1 < l.height ? ptrdiff_t(l.wide) : -ptrdiff_t(l.wide) * x;
+  }
+
+  // Quanta that flow from cells to the next: at most a quarter of the giver's, also where there are
+  // more than float32 tells apart.
+  INLINE Ints flow(size_t at, ptrdiff_t next, const Floats& shares, bool carries) const {
+    const Ints one = load_whole(field_ + at), other = load_whole(field_ + at + next);
+    Vec given;
+    if (carries) {
+      const Vec share = load(shares + at);
+      given = __builtin_convertvector(share > 0.0f ? one : other, Vec) * share;
+    } else
+      given = __builtin_convertvector(one - other, Vec) * r_.rations[FOOD_DIFFUSION];
+    const Ints whole = __builtin_convertvector(given, Ints), mine = one >> 2, its = -(other >> 2);
+    const Ints low = whole > its ? whole : its;
+    return low < mine ? low : mine;
+  }
+
+  // Let nothing pass into or out of walls.
+  void keep_out(const Lattice& l, int x) {
+    const int below = x + 1 < l.height ? x + 1 : 0;
+    for (int y = 0; y < l.width; y++) {
+      const size_t at = size_t(x) * l.wide + y;
+      if (solid(x, y) || solid(below, y)) flow_x_[at] = 0;
+      if (solid(x, y) || solid(x, y + 1 < l.width ? y + 1 : 0)) flow_y_[at] = 0;
     }
   }
 
@@ -255,8 +282,13 @@ class Food {
   }
 
   const Rollout& r_;
-  Array<int32_t> field_, next_, eaters_;
-  Floats along_x_, along_y_;
+  bool alone_;                      // There is one member, which needs no atomics.
+  Array<int32_t> cell_x_, cell_y_;  // At each node.
+  Floats share_;
+  Array<int32_t> field_, eaters_;   // Of cells.
+  Array<int32_t> flow_x_, flow_y_;  // From each cell to the next along an axis.
+  Floats along_x_, along_y_;        // Velocity of the water.
+  Floats share_x_, share_y_;        // Of the giver's quanta that flow to the next cell.
   List<int32_t> ate_;           // Of each body in a step.
   List<int64_t> grown_, lost_;  // In each row.
   int time_ = 0;

@@ -60,7 +60,7 @@ class World {
         repulsion_(b_, r, shares_),
         barrier_(b_, r),
         energy_(b_, r, l_),
-        food_(r, l_),
+        food_(b_, r, l_, team_.size()),
         motion_(b_),
         measuring_(b_, r),
         creatures_(creatures),
