@@ -141,7 +141,7 @@ bench: peers web
 acceptance: install web
 	PYTHONPATH=tests/support $(BIN)/python tests/faults/acceptance.py $(PARTS)
 
-# Random worlds and bodies under sanitisers, also SANITISERS=thread:
+# Random worlds, bodies and crowds under sanitisers, also SANITISERS=thread:
 # make fuzz WORLDS=300, or SANITISED="g++ -mavx2"
 WORLDS ?= 100000
 SANITISED ?= g++
@@ -150,8 +150,10 @@ CHECKS = -std=c++17 -O1 -g1 -pthread -ffp-contract=off -Wno-psabi \
 	-fsanitize=$(SANITISERS) -fno-sanitize-recover=all
 fuzz:
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && \
-	$(SANITISED) $(CHECKS) engine/kernels/check/worlds.cpp -o $$folder/worlds && \
-	$$folder/worlds $(WORLDS)
+	for kind in worlds slots; do \
+		$(SANITISED) $(CHECKS) engine/kernels/check/$$kind.cpp -o $$folder/$$kind && \
+		$$folder/$$kind $(WORLDS) || exit 1; \
+	done
 
 # Take a picture of every page into docs/pictures/page; DATA names a folder with finished runs.
 pictures: install web

@@ -85,6 +85,13 @@ def repelling(body, size=(48, 48), strength=4.0, gradient=fields.binomial, **opt
     return replace(box, steric=fields.Steric(strength, limit, gradient)), start, rest
 
 
+def meeting(body, size=(48, 48), strength=4.0, **options):
+    """A scene whose bodies repel each other where they meet."""
+    box, start, rest = scene(body, size, **options)
+    contact = fields.Contact(single(strength), single(0.1))
+    return replace(box, contact=contact), start, rest
+
+
 def moved(given, way):
     """A scene whose bodies start elsewhere."""
     box, start, rest = given
@@ -230,6 +237,13 @@ SCENES = {
     "bodies that touch, by a Fourier transform": lambda: repelling(
         heap(), (45, 51), matched=True, layers=2, gradient=fields.gaussian
     ),
+    "bodies that meet": lambda: meeting(heap(), matched=True),
+    "soft bodies that meet, for two layers": lambda: meeting(heap(), (45, 51), layers=2),
+    "a soft body that meets itself": lambda: meeting(chain(bend=0.5)),
+    "bodies that meet across the edges": lambda: moved(
+        meeting(heap(), matched=True), (-17.5, 23.5)
+    ),
+    "bodies that meet each other and walls": lambda: kept_out(meeting(heap(), matched=True)),
     "energy": lambda: fed(chain(), matched=True),
     "energy that is taken and spreads": lambda: fed(
         chain(), (45, 51), matched=True, rate=0.1, diffusion=0.05

@@ -37,7 +37,7 @@ class Crowd : Made {
     creatures(), networks(), state(), surround();
   }
 
-  bool sound() const { return microcosmos::sound(w_); }
+  bool sound() const { return refused(w_).empty(); }
 
   // Return what is wrong with the results; nullptr: nothing.
   const char* wrong() {

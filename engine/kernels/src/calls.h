@@ -120,6 +120,8 @@ std::string read_summary(Observed& o, Numbers number) {
   return "";
 }
 
+constexpr char LACKS[] = "the body or the network refers to what it lacks";
+
 inline int64_t when(bool holds, int64_t count) { return holds ? count : 0; }
 
 // Name the arrays of a body at its start. What is absent has no items.
@@ -324,7 +326,9 @@ inline bool sound(const Rollout& r) {
          within(r.bends, r.laid_out ? r.joints : 0, 0, 2);
 }
 
-inline bool between(float value, float least, float most) { return value >= least && value <= most; }
+inline bool between(float value, float least, float most) {
+  return value >= least && value <= most;
+}
 
 // Return whether whole numbers stay whole numbers: of what is rounded, and of sums.
 inline bool sound_food(const Slots& w) {
@@ -345,15 +349,29 @@ inline bool sound_means(const float* means) {
          means[MAX_BEND] > 0 && between(means[LAG_SHARE], 0, 1);
 }
 
-inline bool sound(const Slots& w) {
-  bool good = within(w.filled, w.slots, 0, 2) && within(w.age, w.slots, 0, int64_t(1) << 31) &&
-              sound_food(w);
+inline bool sound(const Observed& o) {
+  return within(o.ends, 2 * o.edges, 0, o.nodes) && within(o.pairs, 2 * o.joints, 0, o.edges) &&
+         within(o.member, o.nodes, 0, o.bodies) && within(o.present, o.nodes, 0, 2);
+}
+
+// Return why a call cannot be carried out, or "".
+template <class Given>
+std::string refused(const Given& given) {
+  return sound(given) ? "" : LACKS;
+}
+
+// Return why slots cannot live, or "".
+inline std::string refused(const Slots& w) {
+  if (!within(w.filled, w.slots, 0, 2)) return "a slot is filled, 1, or empty, 0";
+  if (!within(w.age, w.slots, 0, int64_t(1) << 31)) return "an age is negative";
+  if (!sound_food(w)) return "food, an account, a time or a share is out of range";
   std::vector<int32_t> numbers;  // The order of creatures, so no two may be equal.
-  for (int s = 0; good && s < w.slots; s++)
+  for (int s = 0; s < w.slots; s++)
     if (w.filled[s]) numbers.push_back(w.number[s]);
   std::sort(numbers.begin(), numbers.end());
-  good = good && std::adjacent_find(numbers.begin(), numbers.end()) == numbers.end();
-  for (int64_t s = 0; good && s < w.slots; s++) {
+  if (std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end())
+    return "two creatures have one number";
+  for (int64_t s = 0; s < w.slots; s++) {
     if (!w.filled[s]) continue;
     Rollout r = w.r;
     const int64_t N = r.nodes, E = r.edges, J = r.joints, R = r.rows, L = r.links;
@@ -363,24 +381,20 @@ inline bool sound(const Slots& w) {
     r.joint_colour += r.matched ? 0 : s * J;
     const std::vector<int32_t> member(N, 0);
     r.member = member.data();
-    good = sound(r);
-    good = good && sound_means(w.means + s * MEAN_COUNT) &&
-           std::count(r.present, r.present + N, 1) > 0;
+    if (!sound(r)) return LACKS;
+    if (!sound_means(w.means + s * MEAN_COUNT)) return "a clock or a bound is out of range";
+    if (!std::count(r.present, r.present + N, 1)) return "nothing of a creature has grown";
     // A joint that has grown turns by the output at a node that has.
     auto grown = [&](int32_t edge) {
       const int32_t one = r.ends[2 * edge], other = r.ends[2 * edge + 1];
       return one != other && r.present[one] && r.present[other];
     };
-    for (int64_t j = 0; good && j < J; j++)
-      good = !r.bends[j] || !grown(r.pairs[2 * j]) || !grown(r.pairs[2 * j + 1]) ||
-             r.present[r.joint_node[j]];
+    for (int64_t j = 0; j < J; j++)
+      if (r.bends[j] && grown(r.pairs[2 * j]) && grown(r.pairs[2 * j + 1]) &&
+          !r.present[r.joint_node[j]])
+        return LACKS;
   }
-  return good;
-}
-
-inline bool sound(const Observed& o) {
-  return within(o.ends, 2 * o.edges, 0, o.nodes) && within(o.pairs, 2 * o.joints, 0, o.edges) &&
-         within(o.member, o.nodes, 0, o.bodies) && within(o.present, o.nodes, 0, 2);
+  return "";
 }
 
 }  // namespace microcosmos

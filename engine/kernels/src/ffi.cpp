@@ -41,7 +41,8 @@ ffi::Error each_world(Arrays& arrays, const Given& given, Work work) {
   for (int64_t world = 0; world < arrays.worlds(); world++) {
     arrays.point(world);
     // References may differ between the worlds of a batch, so each world is checked.
-    if (!sound(given)) return invalid("the body or the network refers to what it lacks");
+    const std::string wrong = refused(given);
+    if (!wrong.empty()) return invalid(wrong);
     try {
       work();
     } catch (const std::bad_alloc&) {

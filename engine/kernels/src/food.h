@@ -15,7 +15,7 @@ class Food {
     share_ = Floats(b.node_slots + BLOCK);
     const size_t cells = size_t(l.height + 1) * l.wide;
     field_ = Array<int32_t>(cells), eaters_ = Array<int32_t>(cells);
-    flow_x_ = Array<int32_t>(cells), flow_y_ = Array<int32_t>(cells);
+    for (int member = 0; member < members; member++) flows_.emplace_back(l.wide);
     for (Floats* one : {&along_x_, &along_y_, &share_x_, &share_y_})
       *one = Floats(r.carried ? cells : 0);
     for (int x = 0; x < l.height; x++)
@@ -118,6 +118,13 @@ class Food {
   }
 
  private:
+  // Quanta that flow out of the cells of a row: the one before, this one, and the last of a band; and
+  // along this one, from its second block on.
+  struct Flows {
+    Array<int32_t> up, down, last, along;
+    explicit Flows(size_t row) : up(row), down(row), last(row), along(row + 2 * BLOCK) {}
+  };
+
   static constexpr int32_t FULL_ACCOUNT = 1 << 30;  // With so many quanta nobody eats.
 
   template <class Work>
@@ -213,26 +220,46 @@ class Food {
 
   // Move food from cell to cell, carried by the water or from more to less.
   void move(const Lattice& l, const Band& band, const Member& me, bool carries) {
+    Flows& f = flows_[me.number];
+    const int H = l.height, W = l.width, before = band.from ? band.from - 1 : H - 1;
     me.wait();  // Cells of neighbouring bands are as they were after the last turn.
+    flow_down(l, before, carries, f.up);
+    flow_down(l, band.to - 1, carries, f.last);
+    me.wait();  // Flows between bands are known, and no cell has changed.
     for (int x = band.from; x < band.to; x++) {
-      const ptrdiff_t down = below(l, x);
-      each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
-        store_some(flow_x_ + at, flow(at, down, share_x_, carries), lanes);
-        store_some(flow_y_ + at, flow(at, 1, share_y_, carries), lanes);
-      });
-      if (r_.walled) keep_out(l, x);
-    }
-    me.wait();  // All flows are known, and no cell has changed.
-    for (int x = band.from; x < band.to; x++) {
-      const size_t row = size_t(x) * l.wide, up = size_t(x ? x - 1 : l.height - 1) * l.wide;
+      if (x + 1 < band.to) flow_down(l, x, carries, f.down);
+      const int32_t *up = f.up, *down = x + 1 < band.to ? f.down : f.last;
+      const size_t row = size_t(x) * l.wide;
       // The last cell of a row gives to the first.
-      const int32_t around = flow_y_[row + l.width - 1];
-      field_[row] = field_[row] - flow_y_[row] + around - flow_x_[row] + flow_x_[up];
-      for (int y = 1; y < l.width; y++)
-        field_[row + y] = field_[row + y] - flow_y_[row + y] + flow_y_[row + y - 1] -
-                          flow_x_[row + y] + flow_x_[up + y];
+      int32_t* along = f.along + BLOCK;
+      each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
+        store_some(along + (at - row), flow(at, 1, share_y_, carries), lanes);
+      });
+      if (r_.walled)
+        for (int y = 0; y < W; y++)
+          if (solid(x, y) || solid(x, y + 1 < W ? y + 1 : 0)) along[y] = 0;
+      along[-1] = along[W - 1];
+      each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
+        const size_t y = at - row;
+        const Ints in = load_whole(up + y) + load_whole(along + y - 1);
+        const Ints out = load_whole(down + y) + load_whole(along + y);
+        store_some(field_ + at, load_whole(field_ + at) + (in - out), lanes);
+      });
+      std::swap(f.up, f.down);
     }
     continue_rows(l, band);
+  }
+
+  // Quanta that flow from the cells of a row to those of the next.
+  void flow_down(const Lattice& l, int x, bool carries, int32_t* to) const {
+    const ptrdiff_t down = below(l, x);
+    const size_t row = size_t(x) * l.wide;
+    each_vector(l, x, [&](size_t at, int lanes) __attribute__((always_inline)) {
+      store_some(to + (at - row), flow(at, down, share_x_, carries), lanes);
+    });
+    const int next = x + 1 < l.height ? x + 1 : 0;
+    for (int y = 0; y < l.width && r_.walled; y++)  // Nothing passes into or out of walls.
+      if (solid(x, y) || solid(next, y)) to[y] = 0;
   }
 
   static ptrdiff_t below(const Lattice& l, int x) {
@@ -252,16 +279,6 @@ class Food {
     const Ints whole = __builtin_convertvector(given, Ints), mine = one >> 2, its = -(other >> 2);
     const Ints low = whole > its ? whole : its;
     return low < mine ? low : mine;
-  }
-
-  // Let nothing pass into or out of walls.
-  void keep_out(const Lattice& l, int x) {
-    const int below = x + 1 < l.height ? x + 1 : 0;
-    for (int y = 0; y < l.width; y++) {
-      const size_t at = size_t(x) * l.wide + y;
-      if (solid(x, y) || solid(below, y)) flow_x_[at] = 0;
-      if (solid(x, y) || solid(x, y + 1 < l.width ? y + 1 : 0)) flow_y_[at] = 0;
-    }
   }
 
   // Let food decay and regrow towards the capacity.
@@ -286,10 +303,10 @@ class Food {
   Array<int32_t> cell_x_, cell_y_;  // At each node.
   Floats share_;
   Array<int32_t> field_, eaters_;   // Of cells.
-  Array<int32_t> flow_x_, flow_y_;  // From each cell to the next along an axis.
   Floats along_x_, along_y_;        // Velocity of the water.
   Floats share_x_, share_y_;        // Of the giver's quanta that flow to the next cell.
   List<int32_t> ate_;           // Of each body in a step.
+  List<Flows> flows_;           // Of each member.
   List<int64_t> grown_, lost_;  // In each row.
   int time_ = 0;
 };

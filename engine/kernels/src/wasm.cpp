@@ -61,7 +61,7 @@ void require(const std::string& wrong) {
 }
 template <class Given>
 void require_sound(const Given& given) {
-  if (!sound(given)) page_refuse("the body or the network refers to what it lacks");
+  require(refused(given));
 }
 
 }  // namespace

@@ -53,7 +53,9 @@ def test_the_scenes_of_the_tests_stay_within_their_arrays(tmp_path):
 @pytest.mark.long
 @pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
 def test_any_body_that_the_boundary_accepts_stays_within_its_arrays():
-    """`make fuzz` simulates 100,000 of these worlds."""
+    """`make fuzz` simulates 100,000 of these worlds, and of these crowds."""
     command = ["make", "--no-print-directory", "fuzz", "WORLDS=300"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout.startswith("300 worlds, "), done.stdout + done.stderr[-3000:]
+    worlds, crowds = done.stdout.splitlines() or ("", "")
+    assert worlds.startswith("300 worlds, "), done.stdout + done.stderr[-3000:]
+    assert crowds.startswith("300 crowds, "), done.stdout + done.stderr[-3000:]

@@ -1,7 +1,9 @@
 """Worlds with slots: the kernel against JAX, what changes no bit, and what is conserved."""
 
 from dataclasses import replace
+from functools import reduce
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -11,7 +13,6 @@ from crowds import (
     PERIOD,
     SLOTS,
     birth,
-    contact,
     crowd,
     food,
     grown,
@@ -23,10 +24,9 @@ from crowds import (
     same,
     task_of,
 )
-from kernel_scenes import chain, heap, run, scene, single
-from kernel_scenes import in_jax as roll
+from kernel_scenes import heap, meeting, single
 
-from microcosmos import coupling, fields, world
+from microcosmos import coupling, fields, fluid, world
 from microcosmos.genomes.living import newborn
 from microcosmos.world import nodes, slots
 
@@ -206,14 +206,9 @@ def test_who_is_far_away_changes_no_bit():
     assert np.any(with_it.positions[filled[2]] != without.positions[filled[2]])
 
 
-def met(body, size=(48, 48), strength=4.0, **options):
-    box, start, rest = scene(body, size, **options)
-    return replace(box, contact=contact(strength)), start, rest
-
-
 @pytest.mark.parametrize("way", [(0.0, 0.0), (17.3, -20.2)])
 def test_the_density_of_pairs_is_that_of_the_lattice(way):
-    box, start, _ = met(heap(), matched=True)
+    box, start, _ = meeting(heap(), matched=True)
     places = start.positions + np.float32(way)[None]
     at = coupling.windows(places, box.size, coupling.HAT)
     member = np.asarray(box.groups.member)
@@ -229,26 +224,25 @@ def test_the_density_of_pairs_is_that_of_the_lattice(way):
     np.testing.assert_allclose(found.gradient, of_others, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("body", "options"),
-    [
-        (heap, {"matched": True}),
-        (heap, {}),
-        (heap, {"matched": True, "layers": 2}),
-        (lambda: chain(bend=0.5), {}),
-    ],
-)
-def test_the_kernel_lets_bodies_meet_as_jax(body, options):
-    given = met(body(), **options)
-    end, _ = run(roll, given)
-    found, _ = run(world.native.rollout, given)
-    np.testing.assert_allclose(found.positions, end.positions, atol=5e-4)
-    np.testing.assert_allclose(found.populations, end.populations, atol=3e-5)
+def test_the_kernel_counts_contact_with_obstacles_as_jax():
+    place, held, living = crowd(count=4, side=48, seed=5)
+    solid = np.zeros((48, 48), bool)
+    solid[::12, ::3] = True
+    place = replace(
+        place,
+        surroundings=fluid.Surroundings(solid=jnp.asarray(solid)),
+        barrier=fields.Barrier(single(fields.away(solid)), single(0.1)),
+    )
+    end, of_jax = in_jax(place, held, living, 10)
+    found, of_kernel = in_kernel(place, held, living, 10)
+    assert np.max(of_jax.contact) > 0.1
+    np.testing.assert_allclose(of_kernel.contact, of_jax.contact, atol=1e-3)
+    assert apart(found.positions, end.positions, 48) < 1e-3
 
 
 @pytest.mark.parametrize("strength", [0.5, 4.0, 400.0])
 def test_contact_moves_no_cluster_as_a_whole(strength):
-    box, start, _ = met(heap(), matched=True, strength=strength)
+    box, start, _ = meeting(heap(), matched=True, strength=strength)
     found = nodes.repel(box, start.positions)
     drift = np.asarray(found.drift)
     assert np.abs(drift).max() > 1e-3
@@ -333,9 +327,50 @@ def test_food_regrows_to_its_capacity_and_decays():
     ],
 )
 def test_worlds_in_which_bodies_cannot_meet_are_refused(change, named):
-    box, _, _ = met(heap(), matched=True)
+    box, _, _ = meeting(heap(), matched=True)
     with pytest.raises(ValueError, match=named):
         replace(box, **change)
+
+
+def changed(tree, path, value):
+    """Return slots, or their state, with the first number of an array replaced."""
+
+    def found(tree):
+        return reduce(getattr, path.split("."), tree)
+
+    array = jnp.asarray(found(tree))
+    wrong = array.reshape(-1).at[0].set(value).reshape(array.shape)
+    return eqx.tree_at(found, tree, wrong)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "reason"),
+    [
+        ("slots.occupants.rods.edges", 99, "refers to what it lacks"),
+        ("slots.occupants.rods.joints", -1, "refers to what it lacks"),
+        ("slots.occupants.network.source", 99, "refers to what it lacks"),
+        ("slots.occupants.network.target", -1, "refers to what it lacks"),
+        ("slots.occupants.network.joint_node", 12, "refers to what it lacks"),
+        ("slots.occupants.network.activation", 9, "refers to what it lacks"),
+        ("slots.occupants.means.period", 0.0, "a clock or a bound is out of range"),
+        ("slots.occupants.means.max_speed", 0.0, "a clock or a bound is out of range"),
+        ("slots.occupants.means.max_bend", np.nan, "a clock or a bound is out of range"),
+        ("slots.number", 1, "two creatures have one number"),
+        ("living.age", -1, "an age is negative"),
+        ("living.account", -1, "food, an account, a time or a share is out of range"),
+        ("living.food", -1, "food, an account, a time or a share is out of range"),
+        ("place.food.capacity", 2**24 + 1, "food, an account, a time or a share"),
+        ("place.food.bite", np.inf, "food, an account, a time or a share is out of range"),
+        ("place.food.diffusion", 0.3, "food, an account, a time or a share is out of range"),
+    ],
+)
+def test_slots_that_cannot_live_are_refused(path, value, reason):
+    place, held, living = crowd(count=SLOTS)
+    given = {"place": place, "slots": held, "living": living}
+    name, rest = path.split(".", 1)
+    given[name] = changed(given[name], rest, value)
+    with pytest.raises(Exception, match=f"microcosmos-kernels: .*{reason}"):
+        jax.block_until_ready(in_kernel(given["place"], given["slots"], given["living"], 2))
 
 
 def test_creatures_that_no_slot_holds_are_refused():
