@@ -58,7 +58,7 @@ class Crowd : Made {
     void* end;
     size_t items;  // Of one slot.
   };
-  std::vector<Part> parts_;                            // What goes on in the next window, by slot.
+  std::vector<Part> parts_;  // What goes on in the next window, by slot.
   std::vector<std::pair<const int32_t**, size_t>> held_;  // What slots hold.
   std::vector<std::pair<const float**, size_t>> held_numbers_;
 
@@ -297,8 +297,7 @@ class Crowd : Made {
   std::string order() {
     for (auto& [to, items] : held_) turn(*to, items);
     for (auto& [to, items] : held_numbers_) turn(*to, items);
-    for (const Part& one : parts_)
-      turn(static_cast<const int32_t*>(one.start), one.items);
+    for (const Part& one : parts_) turn(static_cast<const int32_t*>(one.start), one.items);
     return run(w_);
   }
 

@@ -14,11 +14,7 @@ class Actuators {
   Rest paced, rest;  // The command after the bound on speed, and the shape after the lag.
 
   Actuators(const Bodies& b, const Rollout& r, const Nodes& n)
-      : b_(b),
-        r_(r),
-        here_(n.here),
-        shapes_(b, r, r.actuated),
-        paced_shapes_(b, r, r.actuated) {
+      : b_(b), r_(r), here_(n.here), shapes_(b, r, r.actuated), paced_shapes_(b, r, r.actuated) {
     before_x_ = Floats(b.node_slots + BLOCK), before_y_ = Floats(b.node_slots + BLOCK);
     start_.angle.resize(r.joints), start_.length.resize(r.edges);
     edge_here_.resize(r.edges);

@@ -71,7 +71,8 @@ template <class Numbers>
 std::string read_rollout(Rollout& r, Numbers number) {
   std::string wrong = read_body(r, number);
   if (wrong.empty()) wrong = read_world(r, number);
-  if (wrong.empty() && r.senses & ~SENSED_ENERGY) wrong = "a rollout knows the sense of energy alone";
+  if (wrong.empty() && r.senses & ~SENSED_ENERGY)
+    wrong = "a rollout knows the sense of energy alone";
   return wrong;
 }
 

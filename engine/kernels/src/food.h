@@ -118,8 +118,8 @@ class Food {
   }
 
  private:
-  // Quanta that flow out of the cells of a row: the one before, this one, and the last of a band; and
-  // along this one, from its second block on.
+  // Quanta that flow out of the cells of a row: the one before, this one, and the last of a band;
+  // and along this one, from its second block on.
   struct Flows {
     Array<int32_t> up, down, last, along;
     explicit Flows(size_t row) : up(row), down(row), last(row), along(row + 2 * BLOCK) {}
@@ -135,12 +135,12 @@ class Food {
           work(r_.member[node], b.node_slot[node]);
   }
 
-  int here(const Lattice& l, int slot) const {
-    return cell_x_[slot] * int(l.wide) + cell_y_[slot];
-  }
+  int here(const Lattice& l, int slot) const { return cell_x_[slot] * int(l.wide) + cell_y_[slot]; }
 
   int32_t share(int at, int count) const {
-    const int32_t bite = int32_t(r_.rations[BITE]), part = count ? field_[at] / count : 0;
+    const int32_t bite = int32_t(r_.rations[BITE]);
+    // Most eaters are alone, and a division takes as long as all the rest.
+    const int32_t part = count == 1 ? field_[at] : count ? field_[at] / count : 0;
     return part < bite ? part : bite;
   }
 
@@ -195,8 +195,10 @@ class Food {
           jx = jx + 0.5f * load(l.pushes_x + x * l.row + y),
           jy = jy + 0.5f * load(l.pushes_y + x * l.row + y);
         const Vec volume =
-            1.0f / (1.0f + (f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]))));
-        store_some(along_x_ + at, jx * volume, lanes), store_some(along_y_ + at, jy * volume, lanes);
+            1.0f /
+            (1.0f + (f[0] + ((f[1] + f[2]) + (f[3] + f[4])) + ((f[5] + f[6]) + (f[7] + f[8]))));
+        store_some(along_x_ + at, jx * volume, lanes),
+            store_some(along_y_ + at, jy * volume, lanes);
       });
       along_y_[x * l.wide + l.width] = along_y_[x * l.wide];
     }
@@ -302,12 +304,12 @@ class Food {
   bool alone_;                      // There is one member, which needs no atomics.
   Array<int32_t> cell_x_, cell_y_;  // At each node.
   Floats share_;
-  Array<int32_t> field_, eaters_;   // Of cells.
-  Floats along_x_, along_y_;        // Velocity of the water.
-  Floats share_x_, share_y_;        // Of the giver's quanta that flow to the next cell.
-  List<int32_t> ate_;           // Of each body in a step.
-  List<Flows> flows_;           // Of each member.
-  List<int64_t> grown_, lost_;  // In each row.
+  Array<int32_t> field_, eaters_;  // Of cells.
+  Floats along_x_, along_y_;       // Velocity of the water.
+  Floats share_x_, share_y_;       // Of the giver's quanta that flow to the next cell.
+  List<int32_t> ate_;              // Of each body in a step.
+  List<Flows> flows_;              // Of each member.
+  List<int64_t> grown_, lost_;     // In each row.
   int time_ = 0;
 };
 

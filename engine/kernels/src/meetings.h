@@ -16,7 +16,8 @@ class Meetings {
   Floats own_x, own_y;                // The gradient of the body's own density.
 
   // `alone`: whether bodies feel their own density too.
-  Meetings(const Bodies& b, const Rollout& r, bool alone, int members) : b_(b), r_(r), alone_(alone) {
+  Meetings(const Bodies& b, const Rollout& r, bool alone, int members)
+      : b_(b), r_(r), alone_(alone) {
     for (Floats* one : {&others, &others_x, &others_y, &own_x, &own_y})
       *one = Floats(b.node_slots + BLOCK);
     for (Floats* one : {&x_, &y_, &wide_, &high_}) *one = Floats(r.bodies + BLOCK);
@@ -67,10 +68,10 @@ class Meetings {
   }
 
   static Table weights(float share) {
-    constexpr float SMOOTH[] = {0, 0, 0, 1 / 16.0f, 4 / 16.0f, 6 / 16.0f,
-                                4 / 16.0f, 1 / 16.0f, 0, 0, 0};
-    constexpr float SLOPE[] = {0, 0, -1 / 32.0f, -4 / 32.0f, -5 / 32.0f, 0,
-                               5 / 32.0f, 4 / 32.0f, 1 / 32.0f, 0, 0};
+    constexpr float SMOOTH[] = {0,         0,         0, 1 / 16.0f, 4 / 16.0f, 6 / 16.0f,
+                                4 / 16.0f, 1 / 16.0f, 0, 0,         0};
+    constexpr float SLOPE[] = {0,         0,         -1 / 32.0f, -4 / 32.0f, -5 / 32.0f, 0,
+                               5 / 32.0f, 4 / 32.0f, 1 / 32.0f,  0,          0};
     Table w;
     for (int m = 0; m < 2 * REACH + 2; m++) {
       w.smooth[m] = (1 - share) * SMOOTH[m + 1] + share * SMOOTH[m];
@@ -92,7 +93,8 @@ class Meetings {
   void meet(int body, int member) {
     const auto& slots = slots_[body];
     for (int32_t slot : slots)
-      for (float* one : {others + slot, others_x + slot, others_y + slot, own_x + slot, own_y + slot})
+      for (float* one :
+           {others + slot, others_x + slot, others_y + slot, own_x + slot, own_y + slot})
         *one = 0;
     if (slots.empty()) return;
     if (alone_) add(body, body, own_x, own_y, nullptr);
@@ -162,8 +164,8 @@ class Meetings {
   List<int> starts_;           // Of each body in the arrays of nodes below, whole blocks.
   List<List<int32_t>> slots_;  // Of each body's nodes that have grown.
   Array<int32_t> cell_x_, cell_y_;
-  Floats share_x_, share_y_;       // Distances of nodes from their cells.
-  Floats x_, y_, wide_, high_;     // Middle and half the extent of each body.
+  Floats share_x_, share_y_;    // Distances of nodes from their cells.
+  Floats x_, y_, wide_, high_;  // Middle and half the extent of each body.
 };
 
 // The bodies that touch each other, directly or by others, and one factor for all of them.

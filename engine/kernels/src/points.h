@@ -236,8 +236,8 @@ struct Inside {
 // Spread the vectors at points to the forces in the cells of a band. With WHOLE all cells of
 // touched blocks are set; otherwise only those in windows, which points read.
 template <bool WHOLE>
-__attribute__((noinline)) void spread(const Points& p, Lattice& l, const float* x,
-                                             const float* y, const Member& me) {
+__attribute__((noinline)) void spread(const Points& p, Lattice& l, const float* x, const float* y,
+                                      const Member& me) {
   const Band& band = l.bands[me.number];
   const Inside inside(l, band);
   if (WHOLE)

@@ -265,7 +265,7 @@ class Repulsion {
   List<float> anchor_x_, anchor_y_;  // Of each body.
   std::optional<Meetings> meetings_;
   Clusters clusters_;
-  List<float> factor_;    // On the motion of each body by contact.
+  List<float> factor_;     // On the motion of each body by contact.
   List<uint8_t> touched_;  // Each body that touches others.
   List<Rigid> rigid_;
   List<uint8_t> capped_;  // Of each member: whether a factor is below 1.

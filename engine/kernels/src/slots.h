@@ -41,15 +41,15 @@ enum Tallied {
 // slots.
 struct Slots {
   Rollout r;
-  int32_t slots, every;           // Steps from a command to the next.
-  const int32_t* filled;          // (slot) 1, or 0 for an empty slot
-  const int32_t* number;          // (slot) of each creature
-  const int32_t* age;             // (slot) steps
-  const float* means;             // (slot, MEAN_COUNT), see `rollout.h`
-  const float* shape_angles;      // (slot, SHAPE_COUNT, joint)
-  const float* shape_lengths;     // (slot, SHAPE_COUNT, edge)
-  const float* values;            // (slot, row, node) of recurrent networks
-  const int32_t* account;         // (slot) quanta
+  int32_t slots, every;        // Steps from a command to the next.
+  const int32_t* filled;       // (slot) 1, or 0 for an empty slot
+  const int32_t* number;       // (slot) of each creature
+  const int32_t* age;          // (slot) steps
+  const float* means;          // (slot, MEAN_COUNT), see `rollout.h`
+  const float* shape_angles;   // (slot, SHAPE_COUNT, joint)
+  const float* shape_lengths;  // (slot, SHAPE_COUNT, edge)
+  const float* values;         // (slot, row, node) of recurrent networks
+  const int32_t* account;      // (slot) quanta
   int32_t* end_account;
   int32_t* end_age;
   float *end_shape_angles, *end_shape_lengths, *end_values;
@@ -239,7 +239,7 @@ class Creature {
 // All creatures of a window as the bodies of one world.
 class Creatures {
  public:
-  Rollout r;  // Of the world that has them as bodies.
+  Rollout r;               // Of the world that has them as bodies.
   List<int32_t> accounts;  // Of each body.
 
   explicit Creatures(const Slots& w) : r(w.r), w_(w) {
@@ -328,13 +328,13 @@ class Creatures {
         touched.add(part, here ? root(x * x + y * y) : Vec{});
       });
       if (r.fluid)
-        Forcing::each_point(b, b.bodies[body], r, [&](int i, int part)
-                                                      __attribute__((always_inline)) {
-          const Vec x = load(f.velocity_x + i), y = load(f.velocity_y + i);
-          near[part] = most_or_nan(x * x + y * y, near[part]);
-          work.add(part, load(f.x + i) * load(f.target_x + i) +
-                             load(f.y + i) * load(f.target_y + i));
-        });
+        Forcing::each_point(
+            b, b.bodies[body], r, [&](int i, int part) __attribute__((always_inline)) {
+              const Vec x = load(f.velocity_x + i), y = load(f.velocity_y + i);
+              near[part] = most_or_nan(x * x + y * y, near[part]);
+              work.add(part,
+                       load(f.x + i) * load(f.target_x + i) + load(f.y + i) * load(f.target_y + i));
+            });
       const float count = divisor(float(one_[body]->node_count()));
       t.limited += limited.total() / count, t.contact += touched.total() / count;
       t.work += work.total();
@@ -387,7 +387,7 @@ class Creatures {
 
   // Let the ends be the starts: what belongs to an empty slot, or has not grown, stays.
   void begin_ends() const {
-    const auto &from = w_.r;
+    const auto& from = w_.r;
     const size_t S = w_.slots, N = from.nodes, E = from.edges, J = from.joints, R = from.rows;
     std::copy_n(from.positions, 2 * S * N, from.end_positions);
     std::copy_n(from.angles, S * E, from.end_angles);
@@ -443,9 +443,10 @@ class Creatures {
     centre(b, n, body, now);
     for (int axis : {0, 1})
       to[TALLY_DISPLACED_X + axis] = (now[axis] - t.first[axis]) +
-                               (n.boxes[2 * body + axis] - t.first_boxes[axis]) * size(axis);
+                                     (n.boxes[2 * body + axis] - t.first_boxes[axis]) * size(axis);
     to[TALLY_PATH] = float(t.path), to[TALLY_TURNED] = heading(b, n, body) - t.heading;
-    to[TALLY_WORK] = float(t.work), to[TALLY_CONTACT] = float(t.contact), to[TALLY_LIMITED] = float(t.limited);
+    to[TALLY_WORK] = float(t.work), to[TALLY_CONTACT] = float(t.contact),
+    to[TALLY_LIMITED] = float(t.limited);
     to[TALLY_TOUCHED] = float(t.touched), to[TALLY_CAPPED] = float(t.capped);
     to[TALLY_NEAR] = 1.7320508f * root(t.near);
   }
@@ -458,9 +459,11 @@ class Creatures {
     auto slot = [&](int k) { return b.node_slot[c.at.nodes + k]; };
     auto senses = [&](int sense) { return w_.r.senses & sense; };
     auto energy = [&](float x, float y) { return r.fed ? food.at(x, y, l) : e.at(x, y, l); };
-    if (senses(SENSED_ENERGY_ACROSS | SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS)) normals(c, b, n, ax, ay);
+    if (senses(SENSED_ENERGY_ACROSS | SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS))
+      normals(c, b, n, ax, ay);
     if (senses(SENSED_ENERGY)) {
-      for (int k = 0; k < count; k++) sensed[k] = r.fed ? near(food, p, l, slot(k)) : e.near(p, l, slot(k));
+      for (int k = 0; k < count; k++)
+        sensed[k] = r.fed ? near(food, p, l, slot(k)) : e.near(p, l, slot(k));
       sensed += count;
     }
     if (senses(SENSED_ENERGY_ACROSS)) {
@@ -476,8 +479,7 @@ class Creatures {
       for (int k = 0; k < count; k++) sensed[k] = rise;
       sensed += count;
     }
-    if (senses(SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS))
-      sensed = stream(c, b, f, sensed, ax, ay);
+    if (senses(SENSED_FLOW_ALONG | SENSED_FLOW_ACROSS)) sensed = stream(c, b, f, sensed, ax, ay);
     if (senses(SENSED_TOUCH)) {
       for (int k = 0; k < count; k++) sensed[k] = repulsion.others(slot(k));
       sensed += count;
