@@ -1,8 +1,8 @@
 """Many creatures in one fluid: the time of a step of the kernel beside that of its fluid.
 
-Filaments of 24 nodes with networks of their own swim in slots, in closed loop. They touch each
-other, sense, and eat. Prints tables and asserts nothing; worlds and numbers of threads take
-turns.
+Filaments of 24 nodes with networks of their own swim in slots, in closed loop, and touch each
+other; the same, with senses and food. Prints tables and asserts nothing; worlds and numbers of
+threads take turns.
 """
 
 import os
@@ -63,8 +63,8 @@ def main() -> None:
 
 
 def crowd(side: int, count: int, *, alive: bool) -> Crowd:
-    """Return filaments in rows and columns, each turned at random; `alive`: they touch, sense
-    and eat too."""
+    """Return filaments in rows and columns, each turned at random; `alive`: they sense and eat
+    too."""
     scene = spec.Scene.model_validate(
         {"world": {"width": side, "height": side}, "body": {"nodes": 24}}
     )
@@ -72,7 +72,7 @@ def crowd(side: int, count: int, *, alive: bool) -> Crowd:
     senses = tuple(one for one in world.SENSES if alive)
     encoding = task.encoding
     encoding = replace(encoding, controls=replace(encoding.controls, senses=senses))
-    place = replace(task.world, food=food(side), contact=contact()) if alive else task.world
+    place = replace(task.world, food=food(side) if alive else None, contact=contact())
 
     @jax.jit
     def made(key):
@@ -135,10 +135,10 @@ def print_steps(times: Times, threads: list[int]) -> None:
             a[:-1].sum() / b[:-1].sum() for a, b in zip(alone, found, strict=True)
         )
         numbers = (f"{one:.0f}" for one in (whole, step, of_fluid))
-        row = (f"{side}², {count} creatures", "all" if alive else "swim", str(number))
+        row = (f"{side}², {count} creatures", "all" if alive else "touch", str(number))
         rows.append((*row, *numbers, f"{ratio:.2f}", f"{gain:.2f}"))
     head = ("world", "they", "threads", "call", "step", "fluid", "step / fluid", "gain")
-    timing.print_table("µs a step; all: they touch, sense and eat too", head, rows)
+    timing.print_table("µs a step; all: they sense and eat too", head, rows)
 
 
 def print_parts(times: Times) -> None:

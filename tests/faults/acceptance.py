@@ -8,7 +8,8 @@ one, as has that of a second installation, on PostgreSQL and a Redis server; cre
 sense and collect energy; searches with derivatives and without; a page that is left open for
 half an hour, or for as many minutes as `MINUTES` says; thousands of malformed files; a
 search on an emulated older processor; deaths of jobs and hosts; twenty hosts with 500 runs in a
-bad night; and the native kernel beside JAX in 200 random specs.
+bad night; the native kernel beside JAX in 200 random specs; and crowds of creatures in both,
+with a ledger of their energy over 100,000 windows.
 Names of parts choose some.
 """
 
@@ -23,6 +24,7 @@ from typing import Any
 import malformed_hdf5
 import rich
 from cluster import cluster
+from crowds_at_length import crowds
 from databases import Missing, service_settings
 from drive import (
     ROOT,
@@ -160,6 +162,7 @@ PARTS = {
     "uploads": uploads,
     "processors": processors,
     "specs": specs,
+    "crowd": lambda _: crowds(),
 }
 
 

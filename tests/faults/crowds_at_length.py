@@ -1,0 +1,88 @@
+"""Worlds with slots at full size: random crowds in both engines, a ledger of 100,000 windows.
+
+`tests/engine/world/test_slots.py` has the same at a tiny size.
+"""
+
+from dataclasses import replace
+
+import jax.numpy as jnp
+import numpy as np
+import rich
+from crowds import (
+    BODIES,
+    SLOTS,
+    birth,
+    crowd,
+    grown,
+    in_jax,
+    in_kernel,
+    newborns,
+    quanta,
+    same,
+)
+
+from microcosmos import world
+from microcosmos.world import slots
+
+CROWDS, WINDOWS, STEPS = 200, 100_000, 5
+MEDIAN, MOST = 2e-4, 5e-2
+"""Bounds on the distance of nodes in both engines after 100 steps, in cells: contact and senses
+make some crowds grow every difference."""
+
+
+def crowds() -> bool:
+    """Compare the kernel with JAX, then balance the quanta of a long life."""
+    return all([_compared(), _balanced()])
+
+
+def _compared() -> bool:
+    found = []
+    for number in range(CROWDS):
+        random = np.random.default_rng(number)
+        name = list(BODIES)[number % len(BODIES)]
+        place, held, living = crowd(name, count=int(random.integers(1, SLOTS + 1)), seed=number)
+        place = replace(place, viscosity=jnp.float32(random.uniform(0.02, 0.2)))
+        end = other = living
+        for _ in range(10):
+            end, _ = in_jax(place, held, end, 10, 3)
+            other, _ = in_kernel(place, held, other, 10, 3)
+        away = np.asarray(end.positions - other.positions)
+        away = away - 48 * np.round(away / 48)
+        found.append(float(np.abs(away).max()))
+    middle, most = np.median(found), np.percentile(found, 95)
+    rich.print(
+        f"{CROWDS} crowds, kernel beside JAX after 100 steps: {middle:.1e} cells in the "
+        f"median, {most:.1e} in 95 of 100"
+    )
+    return bool(middle < MEDIAN and most < MOST)
+
+
+def _balanced() -> bool:
+    place, held, living = crowd(count=4)
+    random, number = np.random.default_rng(0), 4
+    many = newborns("chains", 48, world.SENSES, 6, 0)
+    begun = before = quanta(held, living)
+    lost = 0
+    for window in range(WINDOWS):
+        living, tally = in_kernel(place, held, living, STEPS)
+        before += grown(tally)
+        lost += quanta(held, living) != before
+        if window % 20:
+            continue
+        slot = int(random.integers(SLOTS))
+        if held.filled[slot]:
+            before -= int(living.account[slot])
+            held = slots.removed(held, slot)
+        else:
+            one, positions = many[int(random.integers(6))]
+            at = np.float32(np.asarray(positions) + random.uniform(0, 48, 2))
+            account = int(random.integers(2**20))
+            held, living = birth(held, living, slot, one, at, number, account)
+            before, number = before + account, number + 1
+    again, _ = in_kernel(place, held, living, STEPS, threads=2)
+    alone, _ = in_kernel(place, held, living, STEPS)
+    rich.print(
+        f"{WINDOWS:,} windows, {number} births: the ledger differed in {lost}; "
+        f"{begun:,} quanta at the start, {before:,} at the end"
+    )
+    return lost == 0 and same(again, alone)
