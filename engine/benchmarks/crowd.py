@@ -17,7 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 import timing
 
-from microcosmos import device, fields, spec, world
+from microcosmos import device, fields, genomes, spec, world
 from microcosmos.build import build_task
 from microcosmos.genomes.living import newborn
 from microcosmos.world import slots
@@ -71,6 +71,7 @@ def crowd(side: int, count: int, *, alive: bool) -> Crowd:
     task = build_task(scene, room=ROOM)
     senses = tuple(one for one in world.SENSES if alive)
     encoding = task.encoding
+    assert isinstance(encoding, genomes.CPPNControl)
     encoding = replace(encoding, controls=replace(encoding.controls, senses=senses))
     place = replace(task.world, food=food(side) if alive else None, contact=contact())
 
