@@ -36,7 +36,7 @@ class Crowd:
     """A world with slots, each of which holds a creature."""
 
     place: world.World
-    slots: slots.Slots
+    held: slots.Slots
     living: slots.Living
 
 
@@ -115,7 +115,7 @@ def parts_of(one: Crowd, steps: int, threads: int) -> Callable[[], np.ndarray]:
 
     def measured() -> np.ndarray:
         start = time.perf_counter()
-        state[0], seconds = jax.block_until_ready(run(one.place, one.slots, state[0]))
+        state[0], seconds = jax.block_until_ready(run(one.place, one.held, state[0]))
         return np.append(seconds, time.perf_counter() - start) / steps
 
     return measured
@@ -155,8 +155,8 @@ def print_parts(times: Times) -> None:
 def print_birth(one: Crowd) -> None:
     """Print the time of a birth and of a death, which compile nothing."""
     birth, death = jax.jit(slots.born), jax.jit(slots.removed)
-    occupant = jax.tree.map(lambda x: x[0], one.slots.occupants)
-    held, living = one.slots, one.living
+    occupant = jax.tree.map(lambda x: x[0], one.held.occupants)
+    held, living = one.held, one.living
     times: dict[str, list[float]] = {"birth": [], "death": []}
     for number in range(BIRTHS + 1):
         slot, start = number % len(held.filled), time.perf_counter()
