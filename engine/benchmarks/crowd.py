@@ -29,6 +29,7 @@ THREADS = (1, 2)
 EVERY, PERIOD = 4, 200.0
 ROOM = (24, 64)
 BIRTHS = 50
+PARTS = len(world.native.PARTS)
 
 
 @dataclass
@@ -63,8 +64,7 @@ def main() -> None:
 
 
 def crowd(side: int, count: int, *, alive: bool) -> Crowd:
-    """Return filaments in rows and columns, each turned at random; `alive`: they sense and eat
-    too."""
+    """Return filaments at random places; `alive`: they sense and eat too."""
     scene = spec.Scene.model_validate(
         {"world": {"width": side, "height": side}, "body": {"nodes": 24}}
     )
@@ -80,14 +80,14 @@ def crowd(side: int, count: int, *, alive: bool) -> Crowd:
         driven = encoding.drive(task.world, task.start, encoding.newcomer(key=key), None)
         return newborn(driven, task.actuators, PERIOD, PERIOD)
 
-    random, columns = np.random.default_rng(0), int(np.ceil(np.sqrt(count)))
+    random = np.random.default_rng(0)
     held, living = slots.empty(place, task.start, made(jax.random.key(0))[0], count)
     birth = jax.jit(slots.born)
     for number in range(count):
         one, positions = made(jax.random.key(number))
         turn = random.uniform(0, 2 * np.pi)
         c, s = np.cos(turn), np.sin(turn)
-        middle = (np.array(divmod(number, columns)) + 0.5) * side / columns
+        middle = random.uniform(0, side, 2)
         at = np.float32(np.asarray(positions) @ np.array([[c, s], [-s, c]]) + middle)
         held, living = birth(held, living, number, one, at, number)
     return Crowd(place, held, living)
@@ -106,8 +106,9 @@ def food(side: int) -> fields.Food:
 
 
 def parts_of(one: Crowd, steps: int, threads: int) -> Callable[[], np.ndarray]:
-    """Return a program for the seconds that each part of a step takes, with those of the whole
-    call as the last; each call goes on from the one before."""
+    """Return a program for the seconds that each part of a step takes, those of the whole call
+    and, as the last, the share of creatures that touch others in a step. Each call goes on from
+    the one before."""
     run = jax.jit(
         partial(world.native.part_seconds_of_slots, steps=steps, every=EVERY, threads=threads)
     )
@@ -115,8 +116,11 @@ def parts_of(one: Crowd, steps: int, threads: int) -> Callable[[], np.ndarray]:
 
     def measured() -> np.ndarray:
         start = time.perf_counter()
-        state[0], seconds = jax.block_until_ready(run(one.place, one.held, state[0]))
-        return np.append(seconds, time.perf_counter() - start) / steps
+        state[0], tally, seconds = jax.block_until_ready(run(one.place, one.held, state[0]))
+        whole = time.perf_counter() - start
+        # In millionths, as the times are.
+        touch = 1e-6 * float(jnp.mean(tally.touched))
+        return np.append(seconds, [whole, touch]) / steps
 
     return measured
 
@@ -127,18 +131,19 @@ Times = dict[tuple[int, int, bool, int], list[np.ndarray]]
 def print_steps(times: Times, threads: list[int]) -> None:
     fluid, rows = world.native.PARTS.index("fluid"), []
     for (side, count, alive, number), found in times.items():
-        step = statistics.median(one[:-1].sum() for one in found)
-        whole = statistics.median(one[-1] for one in found)
+        step = statistics.median(one[:PARTS].sum() for one in found)
+        whole, touch = (statistics.median(one[at] for one in found) for at in (-2, -1))
         of_fluid = statistics.median(one[fluid] for one in found)
-        ratio = statistics.median(one[:-1].sum() / one[fluid] for one in found)
+        ratio = statistics.median(one[:PARTS].sum() / one[fluid] for one in found)
         alone = times[side, count, alive, threads[0]]
         gain = statistics.median(
-            a[:-1].sum() / b[:-1].sum() for a, b in zip(alone, found, strict=True)
+            a[:PARTS].sum() / b[:PARTS].sum() for a, b in zip(alone, found, strict=True)
         )
         numbers = (f"{one:.0f}" for one in (whole, step, of_fluid))
         row = (f"{side}², {count} creatures", "all" if alive else "touch", str(number))
-        rows.append((*row, *numbers, f"{ratio:.2f}", f"{gain:.2f}"))
+        rows.append((*row, *numbers, f"{ratio:.2f}", f"{gain:.2f}", f"{touch:.2f}"))
     head = ("world", "they", "threads", "call", "step", "fluid", "step / fluid", "gain")
+    head = (*head, "touching")
     timing.print_table("µs a step; all: they sense and eat too", head, rows)
 
 

@@ -41,13 +41,15 @@ class Crowd : Made {
 
   // Return what is wrong with the results; nullptr: nothing.
   const char* wrong() {
-    const std::string found = run(w_);
+    const std::string found = run(w_), measured = measures();
     if (w_.r.fed && !balanced()) return "loses food";
     w_.r.threads = 2 + random_.below(3);
-    if (run(w_) != found) return "depends on the number of threads";
+    if (run(w_) != found || measures() != measured) return "depends on the number of threads";
     w_.r.threads = 1;
     if (cut() != found) return "depends on the cut of the window";
-    return order() == found ? nullptr : "depends on the order of slots";
+    if (order() != found || measures() != measured)
+      return "depends on the order of slots, or on empty ones";
+    return nullptr;
   }
 
  private:
@@ -139,16 +141,16 @@ class Crowd : Made {
       }
     r.joint_node = indices(nodes), held_.push_back({&r.joint_node, size_t(r.joints)});
     real(r.gain, r.joints, -1, 1), real(r.body_length, r.edges, 0, 2);
-    float* means = room(size_t(S) * MEAN_COUNT);  // The boundary refuses wild ones.
+    float* actuation = room(size_t(S) * ACTUATION_COUNT);  // The boundary refuses wild ones.
     for (int s = 0; s < S; s++) {
-      float* mine = means + s * MEAN_COUNT;
-      for (int one = 0; one < MEAN_COUNT; one++) mine[one] = random_.between(1e-4f, 1);
+      float* mine = actuation + s * ACTUATION_COUNT;
+      for (int one = 0; one < ACTUATION_COUNT; one++) mine[one] = random_.between(1e-4f, 1);
       for (int bound : {MAX_SPEED, MAX_BEND})
         if (few()) mine[bound] = INFINITY;
       if (few()) mine[PHASE] = 0;
       mine[PERIOD] = random_.between(1, 300), mine[RAMP] = few() ? 0 : random_.between(0, 99);
     }
-    w_.means = means, held_numbers_.push_back({&w_.means, MEAN_COUNT});
+    w_.actuation = actuation, held_numbers_.push_back({&w_.actuation, ACTUATION_COUNT});
   }
 
   // Without cycles, unless they are allowed: a network that is not recurrent has no memory.
@@ -194,7 +196,8 @@ class Crowd : Made {
     // Shares are not wild: the boundary has them from a spec.
     float* rations = room(r.fed * RATION_COUNT);
     if (r.fed) {
-      const float most[] = {9000, 1, 1, 0.25f, 1e6f, 1e6f};
+      const float bite = coin() ? 9000 : std::min(16777216.0f, 1073741824.0f / float(r.nodes));
+      const float most[] = {bite, 1, 1, 0.25f, 1e6f, 1e6f};
       for (int i = 0; i < RATION_COUNT; i++) rations[i] = random_.between(i > 3, most[i]);
     }
     r.rations = rations, w_.tally = room(S * TALLY_COUNT);
@@ -241,16 +244,28 @@ class Crowd : Made {
     for (int i = 0; i < 9; i++) add(found, r.end_populations[i], cells);
     add(found, r.end_energy, r.energetic * cells), add(found, r.end_food, r.fed * cells);
     add(found, r.end_time, r.fed);
-    std::vector<int> order;
-    for (int s = 0; s < w.slots; s++)
-      if (w.filled[s]) order.push_back(s);
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return w.number[a] < w.number[b]; });
-    for (int s : order) {
+    for (int s : living(w)) {
       lived++;
       for (const Part& one : parts_)
         add(found, static_cast<const char*>(one.end) + 4 * s * one.items, one.items);
     }
     return found;
+  }
+
+  // The bytes of the measures, of slots in the order of their creatures.
+  std::string measures() const {
+    std::string found;
+    add(found, w_.r.grown, w_.r.fed * 2 * w_.r.height), add(found, w_.r.lost, w_.r.fed * 2 * w_.r.height);
+    for (int s : living(w_)) add(found, w_.tally + s * TALLY_COUNT, TALLY_COUNT);
+    return found;
+  }
+
+  static std::vector<int> living(const Slots& w) {
+    std::vector<int> order;
+    for (int s = 0; s < w.slots; s++)
+      if (w.filled[s]) order.push_back(s);
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return w.number[a] < w.number[b]; });
+    return order;
   }
 
   bool balanced() const {
@@ -293,12 +308,26 @@ class Crowd : Made {
     return run(other);
   }
 
-  // The same with the slots the other way round.
+  // The same with the slots the other way round, and with anything in empty ones.
   std::string order() {
     for (auto& [to, items] : held_) turn(*to, items);
     for (auto& [to, items] : held_numbers_) turn(*to, items);
     for (const Part& one : parts_) turn(static_cast<const int32_t*>(one.start), one.items);
+    for (auto& [to, items] : held_)
+      if (to != &w_.filled) litter(*to, items);
+    for (auto& [to, items] : held_numbers_) litter(*to, items);
+    for (const Part& one : parts_)
+      // The boundary looks at ages and accounts of all slots.
+      if (one.start != w_.age && one.start != w_.account)
+        litter(static_cast<const int32_t*>(one.start), one.items);
     return run(w_);
+  }
+
+  // Write bytes into what an empty slot has: no number at all, or one that refers to nothing.
+  template <class T>
+  void litter(const T* given, size_t items) {
+    for (int s = 0; s < w_.slots; s++)
+      if (!w_.filled[s]) std::memset(const_cast<T*>(given) + s * items, 0xff, 4 * items);
   }
 
   // The arrays are ours, so they may be changed.
@@ -326,5 +355,5 @@ int main(int count, char** arguments) {
     }
     lived += one.lived;
   }
-  std::printf("%d crowds, %d creatures\n", crowds, lived);
+  std::printf("%d crowds, %d creatures lived\n", crowds, lived);
 }

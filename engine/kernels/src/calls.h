@@ -201,7 +201,7 @@ void name_window(Arrays& a, Slots& w) {
   a.in("colours of joints", &r.joint_colour, {swept, J});
   a.in("whole turns", &r.whole, {swept, J});
   a.in("stretch", &r.stretch, {S, E}), a.in("shear", &r.shear, {S, E});
-  a.in("bend", &r.bend, {S, J}), a.in("means", &w.means, {S, MEAN_COUNT});
+  a.in("bend", &r.bend, {S, J}), a.in("actuation", &w.actuation, {S, ACTUATION_COUNT});
   a.in("activations", &r.activation, {S, R}), a.in("biases", &r.bias, {S, R});
   a.in("sources", &r.source, {S, L}), a.in("targets", &r.target, {S, L});
   a.in("weights", &r.weight, {S, L}), a.in("sites", &r.site, {S, r.sites, N});
@@ -337,7 +337,10 @@ inline bool sound_food(const Slots& w) {
   if (!r.fed) return true;
   const int64_t cells = int64_t(r.height) * r.width;
   const float *given = r.rations, most = 16777216;
-  return between(given[BITE], 0, most) && between(given[REGROWTH], 0, 1) &&
+  // What a row of cells gains in a window has to fit into `Rollout::grown`.
+  const int64_t times = r.steps / r.food_every + 1;
+  if (times * r.width >= int64_t(1) << 19) return false;
+  return between(given[BITE], 0, most) && given[BITE] * float(r.nodes) <= 1073741824.0f && between(given[REGROWTH], 0, 1) &&
          between(given[DECAY], 0, 1) && between(given[FOOD_DIFFUSION], 0, 0.25f) &&
          given[UNIT] > 0 && given[FULL] > 0 && within(r.capacity, cells, 0, (1 << 24) + 1) &&
          within(r.food, cells, 0, 1 << 30) && within(w.account, w.slots, 0, int64_t(1) << 31) &&
@@ -345,9 +348,9 @@ inline bool sound_food(const Slots& w) {
 }
 
 // Return whether a creature has a clock that goes, and bounds that are not 0, which is none.
-inline bool sound_means(const float* means) {
-  return means[PERIOD] > 0 && means[PERIOD] < 1e30f && means[RAMP] >= 0 && means[MAX_SPEED] > 0 &&
-         means[MAX_BEND] > 0 && between(means[LAG_SHARE], 0, 1);
+inline bool sound_actuation(const float* given) {
+  return given[PERIOD] > 0 && given[PERIOD] < 1e30f && given[RAMP] >= 0 && given[MAX_SPEED] > 0 &&
+         given[MAX_BEND] > 0 && between(given[LAG_SHARE], 0, 1);
 }
 
 inline bool sound(const Observed& o) {
@@ -383,7 +386,7 @@ inline std::string refused(const Slots& w) {
     const std::vector<int32_t> member(N, 0);
     r.member = member.data();
     if (!sound(r)) return LACKS;
-    if (!sound_means(w.means + s * MEAN_COUNT)) return "a clock or a bound is out of range";
+    if (!sound_actuation(w.actuation + s * ACTUATION_COUNT)) return "a clock or a bound is out of range";
     if (!std::count(r.present, r.present + N, 1)) return "nothing of a creature has grown";
     // A joint that has grown turns by the output at a node that has.
     auto grown = [&](int32_t edge) {

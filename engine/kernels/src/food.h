@@ -291,7 +291,9 @@ class Food {
       const int32_t* capacity = r_.capacity + size_t(x) * l.width;
       int64_t lost = 0, grown = 0;
       for (int y = 0; y < l.width; y++) {
-        const int32_t gone = int32_t(float(field[y]) * decay), left = field[y] - gone;
+        // Beyond 2^24 quanta the product may be more than there is.
+        const int32_t gone = std::min(int32_t(float(field[y]) * decay), field[y]);
+        const int32_t left = field[y] - gone;
         const int32_t gap = capacity[y] - left;
         const int32_t more = int32_t(float(gap > 0 ? gap : 0) * regrowth);
         field[y] = left + more, lost += gone, grown += more;

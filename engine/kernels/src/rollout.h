@@ -45,7 +45,7 @@ enum Bound { ANGLE_SCALE, LENGTH_SCALE, PHASE, MAX_SPEED, LAG_SHARE, MAX_BEND, B
 // Places of `rations`.
 enum Ration { BITE, REGROWTH, DECAY, FOOD_DIFFUSION, UNIT, FULL, RATION_COUNT };
 // The bounds of a slot's creature, with the steps of a stroke and those in which it grows.
-enum Mean { PERIOD = BOUND_COUNT, RAMP, MEAN_COUNT };
+enum Actuation { PERIOD = BOUND_COUNT, RAMP, ACTUATION_COUNT };
 // What nodes sense, as sums of these; whole evaluations know the energy alone. The order is that
 // of `world.senses`.
 enum Sense {

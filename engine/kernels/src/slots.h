@@ -45,7 +45,7 @@ struct Slots {
   const int32_t* filled;       // (slot) 1, or 0 for an empty slot
   const int32_t* number;       // (slot) of each creature
   const int32_t* age;          // (slot) steps
-  const float* means;          // (slot, MEAN_COUNT), see `rollout.h`
+  const float* actuation;          // (slot, ACTUATION_COUNT), see `rollout.h`
   const float* shape_angles;   // (slot, SHAPE_COUNT, joint)
   const float* shape_lengths;  // (slot, SHAPE_COUNT, edge)
   const float* values;         // (slot, row, node) of recurrent networks
@@ -123,7 +123,7 @@ class Creature {
     alone_.layout_angle = all.layout_angle + at.edges;
     alone_.layout_rest_angle = all.layout_rest_angle + at.joints;
     alone_.bends = all.bends + at.joints;
-    alone_.control = w_.means + slot * MEAN_COUNT;
+    alone_.control = w_.actuation + slot * ACTUATION_COUNT;
     alone_.activation = r.activation + slot * R, alone_.bias = r.bias + slot * R;
     alone_.source = r.source + slot * L, alone_.target = r.target + slot * L;
     alone_.weight = r.weight + slot * L;
@@ -204,9 +204,9 @@ class Creature {
 
   // The timer and the growth of the stroke at its age.
   void tell_time() {
-    const float *means = w_.means + slot * MEAN_COUNT, rise = means[RAMP];
+    const float *actuation = w_.actuation + slot * ACTUATION_COUNT, rise = actuation[RAMP];
     Vec s, c;
-    sine_cosine(all(6.2831855f * passed(means[PERIOD])), s, c);
+    sine_cosine(all(6.2831855f * passed(actuation[PERIOD])), s, c);
     timer_[0] = s[0], timer_[1] = c[0];
     const float grown = (float(age) + (rise > 0 ? 0.0f : 1.0f)) / (rise > 1 ? rise : 1.0f);
     ramp_ = grown < 1 ? grown : 1;
@@ -407,7 +407,7 @@ class Creatures {
     r.bodies = int(one_.size()), r.commands = GIVEN, r.observed = false;
     r.recurrent = r.waves = r.actuated = false, r.senses = 0;  // Creatures command themselves.
     r.rows = r.links = r.inputs = r.sites = r.timers = 0;
-    r.control = w_.means;
+    r.control = w_.actuation;
     r.positions = positions_.data(), r.angles = angles_.data(), r.boxes = boxes_.data();
     r.collected = collected_.data(), r.ends = ends_.data(), r.pairs = pairs_.data();
     r.member = member_.data(), r.piece = piece_.data(), r.present = present_.data();

@@ -28,7 +28,8 @@ class Contact(eqx.Module):
     strength: Float[Array, ""]
     """Displacement in a step per unit of gradient, cells³."""
     limit: Float[Array, ""]
-    """The largest displacement in a step, cells."""
+    """The largest displacement in a step, cells: of a body's centre, and of its farthest node
+    by rotation."""
 
 
 class Density(eqx.Module):

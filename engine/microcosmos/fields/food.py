@@ -26,7 +26,7 @@ class Food(eqx.Module):
     capacity: Quanta
     """Towards which food regrows."""
     bite: Float[Array, ""]
-    """Most quanta that a node eats in a step."""
+    """Most quanta that a node eats in a step; for all nodes of a creature at most 2³⁰."""
     regrowth: Float[Array, ""]
     """Share of what is missing that regrows every `every` steps, at most 1."""
     decay: Float[Array, ""]
@@ -40,6 +40,14 @@ class Food(eqx.Module):
     carried: bool = eqx.field(static=True, default=True)
     """Whether the flow carries food."""
     every: int = eqx.field(static=True, default=20)
+
+    def __check_init__(self):
+        if self.every < 1:
+            raise ValueError(f"`every` must be at least 1 step, got {self.every}.")
+        if not jnp.issubdtype(self.capacity.dtype, jnp.integer):
+            raise ValueError(
+                f"`capacity` must be in whole quanta, got {self.capacity.dtype.name}."
+            )
 
 
 def eaten(
@@ -69,8 +77,8 @@ def changed(
     that have grown and that are lost in each row.
 
     The flow carries by the velocity at the faces of cells, upwind, in turns of at most four
-    steps: at most a quarter of a cell's food passes each face in a turn, so water faster than
-    1/16 cells a step carries food more slowly than itself.
+    steps. At most a quarter of a cell's food passes each face in a turn. So where `every` is a
+    multiple of 4, water faster than 1/16 cells a step carries food more slowly than itself.
     """
     if given.carried:
         turns = -(-given.every // 4)
@@ -90,20 +98,21 @@ def changed(
         for axis in (0, 1)
     ]
     food = _moved(food, flows, solid)
-    lost = _whole(food, given.decay)
+    # Beyond 2²⁴ quanta the product may be more than there is.
+    lost = jnp.minimum(_whole(food, given.decay), food)
     left = food - lost
     grown = _whole(jnp.maximum(given.capacity - left, 0), given.regrowth)
     return left + grown, summed(grown), summed(lost)
 
 
 def summed(quanta: Quanta) -> Rows:
-    """Return the sum over each row; an int32 would be too small for it."""
+    """Return the sum over each row in two parts: an int32 would be too small for it."""
     return added(jnp.stack([quanta >> 12, quanta & 4095], 2), 1)
 
 
 def added(rows: Int[Array, "*any 2"], axis: int) -> Rows:
     """Return sums over an axis of numbers in two parts."""
-    high, low = jnp.moveaxis(jnp.sum(rows, axis), -1, 0)
+    high, low = jnp.moveaxis(jnp.sum(rows, axis, dtype=rows.dtype), -1, 0)
     return jnp.stack([high + (low >> 12), low & 4095], -1)
 
 

@@ -63,7 +63,7 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
     def remember(
         world: World, state: State, given: tuple[Array, Array]
     ) -> Float[Array, "row node"]:
-        inputs = network_inputs(controls, given[0][:, None], sense(world, state))
+        inputs = network_inputs(controls, given[0][:, None], _sensed(controls, world, state))
         return advance(network, state.memory, inputs)
 
     def control(world: World, state: State, given: tuple[Array, Array]):
@@ -71,6 +71,14 @@ def drive_recurrent(network: CPPN, controls: Controls, world: World, start: Stat
 
     start = replace(start, memory=nothing)
     return Drive(world, start, (timer, ramp), control, remember)
+
+
+def _sensed(controls: Controls, world: World, state: State) -> Float[Array, "node"]:
+    if controls.senses != ("energy",):
+        raise ValueError(
+            f"`senses` must be energy alone outside slots, got {', '.join(controls.senses)}."
+        )
+    return sense(world, state)
 
 
 @dataclass(frozen=True)
@@ -117,7 +125,7 @@ def drive_feed_forward(read: Function, controls: Controls, world: World, start: 
         return Drive(world, start, rest_shapes(read, controls, dtype))
 
     def control(world: World, state: State, inputs: tuple[Array, Array]):
-        return rest_shape(read, controls, *inputs, sense(world, state))
+        return rest_shape(read, controls, *inputs, _sensed(controls, world, state))
 
     inputs = jnp.asarray(controls.timer.T, dtype), jnp.asarray(controls.ramp, dtype)
     return Drive(world, start, inputs, control)

@@ -20,13 +20,14 @@ from ..portable import cosine, sine
 from ..world import Controller, Network, State, World, flow, grown_nodes, mean, step
 from ..world.senses import Stock, sensed
 from ..world.slots import (
+    Actuation,
     Living,
-    Means,
     Occupant,
     Slots,
-    Step,
+    StepTally,
     Tally,
     by_slot,
+    check_window,
     flat_state,
     inhabited,
     intake,
@@ -77,7 +78,7 @@ def newborn(
         layout=layout,
         rest_length=controller.rest_length,
         network=replace(network, timer=jnp.zeros((0, 2), dtype)),
-        means=Means(
+        actuation=Actuation(
             angle_scale=number(controller.angle_scale),
             length_scale=number(controller.length_scale),
             phase=number(0.0 if controller.phase is None else controller.phase),
@@ -93,14 +94,19 @@ def newborn(
 def live(
     place: World, slots: Slots, living: Living, steps: int, every: int = 1
 ) -> tuple[Living, Tally]:
-    """Return what lives after a window of steps, and the measures of each slot.
+    """Return the state after a window of steps, and the measures of each slot.
 
-    A creature is commanded at birth and `every` so many steps after.
+    The network of a creature commands at birth and `every` so many steps after. In single
+    precision the clock is exact up to an age of 2²⁴ steps; that of the kernel is always.
+
+    Raises `ValueError` for numbers of steps that are not positive, for food without its state,
+    and for a window so long that the sums of grown food could be too large.
     """
+    check_window(place, living, steps, every)
     box = inhabited(place, slots)
     senses = slots.occupants.network.senses
 
-    def advanced(living: Living, _: Any) -> tuple[Living, tuple[Step, Any]]:
+    def advanced(living: Living, _: Any) -> tuple[Living, tuple[StepTally, Any]]:
         flat = flat_state(living)
         rows = sensed(box, flat, senses, _stock(place, living))
         rows = rows.reshape(len(senses), *living.positions.shape[:2])
@@ -136,7 +142,7 @@ def _fed(box: World, flat: State, living: Living) -> tuple[Living, Any]:
     has changed; with the quanta that have grown and that are lost."""
     given, food, account, time = box.food, living.food, living.account, living.time
     if given is None or food is None or account is None or time is None:
-        return living, None
+        return living, None  # `check_window` has refused all but the first.
     hungry = grown_nodes(box) & box.groups.per_node(account < fields.food.FULL_ACCOUNT)
     left, ate = fields.eaten(food, flat.positions, hungry, given.bite)
     time, nothing = time + 1, jnp.zeros((len(food), 2), food.dtype)
@@ -163,9 +169,9 @@ def _act(
         command, values = jax.tree.map(
             lambda new, old: jnp.where(due, new, old), (ordered, commanded), (command, values)
         )
-        means, layout = occupant.means, occupant.layout
-        paced = towards(paced, command, layout, means.max_speed, occupant.present)
-        shapes = command, paced, between(rest, paced, 1 / (1 + means.lag))
+        actuation, layout = occupant.actuation, occupant.layout
+        paced = towards(paced, command, layout, actuation.max_speed, occupant.present)
+        shapes = command, paced, between(rest, paced, 1 / (1 + actuation.lag))
         edges = _grown_edges(occupant)
         return tuple(map(partial(_where_grown, occupant, edges), shapes, memory)), values
 
@@ -194,12 +200,12 @@ def _command(
     one: Occupant, values: Any, age: Int[Array, ""], rows: Float[Array, "sense node"]
 ) -> tuple[Rest, Any]:
     """Return the bounded command of a creature at an age, and the values of its network."""
-    network, means, dtype = one.network, one.means, one.network.bias.dtype
+    network, actuation, dtype = one.network, one.actuation, one.network.bias.dtype
     steps = age.astype(dtype)
-    turn = 2 * jnp.pi * jnp.mod(steps, means.period) / means.period
+    turn = 2 * jnp.pi * jnp.mod(steps, actuation.period) / actuation.period
     timer = jnp.stack([sine(turn), cosine(turn)])[:, None]
-    ramp = jnp.minimum(1.0, (steps + (means.ramp <= 0)) / jnp.maximum(means.ramp, 1.0))
-    timer = jnp.asarray(shifted(timer, means.phase))
+    ramp = jnp.minimum(1.0, (steps + (actuation.ramp <= 0)) / jnp.maximum(actuation.ramp, 1.0))
+    timer = jnp.asarray(shifted(timer, actuation.phase))
     nodes = len(one.present)
     inputs = [network.sites, jnp.repeat(timer, nodes, 1)]
     if network.lag is not None:
@@ -210,10 +216,10 @@ def _command(
     length = 0.5 * (length[ends[:, 0]] + length[ends[:, 1]])
     angle = angle[network.joint_node] * network.gain
     command = Rest(
-        one.layout.rest_angle + means.angle_scale * ramp * angle,
-        one.rest_length * (1 + means.length_scale * ramp * length),
+        one.layout.rest_angle + actuation.angle_scale * ramp * angle,
+        one.rest_length * (1 + actuation.length_scale * ramp * length),
     )
-    return bent(command, one.layout, means.max_bend, _grown_edges(one)), values
+    return bent(command, one.layout, actuation.max_bend, _grown_edges(one)), values
 
 
 def _outputs(network: Network, values: Any, inputs: Points) -> tuple[Points, Any]:
@@ -256,7 +262,7 @@ def _chosen(filled: Any, after: Living, before: Living) -> Living:
     return replace(after, **of_slots)
 
 
-def _added_up(place: World, slots: Slots, before: Any, seen: Step) -> Tally:
+def _added_up(place: World, slots: Slots, before: Any, seen: StepTally) -> Tally:
     """Return the measures of a window from those of its steps, time first."""
     size = jnp.array(place.size, seen.centre.dtype)[None, None]
     centre, boxes, heading = (
@@ -266,7 +272,8 @@ def _added_up(place: World, slots: Slots, before: Any, seen: Step) -> Tally:
     ways = centre[1:] - centre[:-1] + (boxes[1:] - boxes[:-1]) * size
     tally = Tally(
         displacement=centre[-1] - centre[0] + (boxes[-1] - boxes[0]) * size[0],
-        path=jnp.sum(jnp.sqrt(jnp.sum(ways * ways, 2)), 0),
+        # The constant keeps the root differentiable where nothing moves.
+        path=jnp.sum(jnp.sqrt(jnp.sum(ways * ways, 2) + 1e-24), 0),
         turned=heading[-1] - heading[0],
         work=jnp.sum(seen.work, 0),
         contact=jnp.sum(seen.contact, 0),

@@ -80,8 +80,8 @@ class World(eqx.Module):
     """The order in which bodies in exactly one place are parted; None: that of the groups."""
 
     def __check_init__(self):
-        if self.food is not None and self.food.carried and not self.form.fluid:
-            raise ValueError("`food` must not be `carried` in a world without a fluid.")
+        if self.food is not None:
+            self._check_food(self.food)
         if self.contact is None:
             return
         if self.steric is not None:
@@ -91,6 +91,17 @@ class World(eqx.Module):
             raise ValueError(
                 f"`size` must be at least {least} along each axis where bodies meet, "
                 f"got {self.size}."
+            )
+
+    def _check_food(self, food: fields.Food) -> None:
+        if food.carried and not self.form.fluid:
+            raise ValueError("`food` must not be `carried` in a world without a fluid.")
+        if self.energy is not None:
+            raise ValueError("a world must have `energy` or `food`, got both.")
+        if food.capacity.shape != self.size:
+            raise ValueError(
+                f"`food.capacity` must have the shape {self.size} of the world, "
+                f"got {food.capacity.shape}."
             )
 
 

@@ -31,7 +31,7 @@ from .operands import (
     stiffness_of,
     surroundings_of,
 )
-from .slots import Living, Slots, Tally, flat_state, intake
+from .slots import Living, Slots, Tally, check_window, flat_state, intake
 
 LOG = logging.getLogger(__name__)
 PARTS = (
@@ -193,19 +193,18 @@ def live(
     instruction_set: str | None = None,
     threads: int = 1,
 ) -> tuple[Living, Tally]:
-    """Return what lives after a window of steps, and the measures of each slot, as
-    `genomes.live`. Raises `ValueError` for a world that the kernel does not cover.
+    """Return the state after a window of steps, and the measures of each slot, as
+    `genomes.living.live`. Raises `ValueError` for a world that the kernel does not cover.
     """
     return _live(place, slots, living, steps, every, instruction_set, {"threads": threads})[:2]
 
 
 def part_seconds_of_slots(
     place: World, slots: Slots, living: Living, steps: int, every: int = 1, threads: int = 1
-) -> tuple[Living, Float[Array, "part"]]:
-    """Return what lives after a window, and the time spent in each of `PARTS`, in seconds."""
-    chosen = {"timed": True, "threads": threads}
-    after, _, seconds = _live(place, slots, living, steps, every, None, chosen)
-    return after, seconds
+) -> tuple[Living, Tally, Float[Array, "part"]]:
+    """Return the state after a window, the measures of each slot, and the time spent in each
+    of `PARTS`, in seconds."""
+    return _live(place, slots, living, steps, every, None, {"timed": True, "threads": threads})
 
 
 def _live(
@@ -217,6 +216,7 @@ def _live(
     instruction_set: str | None,
     chosen: Numbers,
 ) -> tuple[Living, Tally, Float[Array, "part"]]:
+    check_window(place, living, steps, every)
     reason = uncovered(place, flat_state(living))
     if reason:
         raise ValueError(f"the native kernel does not cover {reason}")

@@ -154,7 +154,7 @@ def slots_of(place: World, slots: Slots) -> tuple[list[Array], Numbers]:
         rods.stretch,
         rods.shear,
         bend,
-        _means(slots),
+        _actuation(slots),
         jnp.asarray(network.activation, jnp.int32),
         network.bias,
         jnp.asarray(network.source, jnp.int32),
@@ -191,18 +191,18 @@ def slots_of(place: World, slots: Slots) -> tuple[list[Array], Numbers]:
     return arrays, numbers
 
 
-def _means(slots: Slots) -> Array:
+def _actuation(slots: Slots) -> Array:
     """Return scales, phase, bounds and clock of each slot, in the kernel's order."""
-    means = slots.occupants.means
+    actuation = slots.occupants.actuation
     values = (
-        means.angle_scale,
-        means.length_scale,
-        means.phase,
-        means.max_speed,
-        1 / (1 + means.lag),
-        means.max_bend,
-        means.period,
-        means.ramp,
+        actuation.angle_scale,
+        actuation.length_scale,
+        actuation.phase,
+        actuation.max_speed,
+        1 / (1 + actuation.lag),
+        actuation.max_bend,
+        actuation.period,
+        actuation.ramp,
     )
     return jnp.stack([jnp.asarray(one, jnp.float32) for one in values], 1)
 

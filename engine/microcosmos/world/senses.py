@@ -1,4 +1,4 @@
-"""What nodes sense of the energy and of the water around them."""
+"""Senses of nodes: for energy, water and other bodies around them."""
 
 from dataclasses import replace
 
@@ -11,8 +11,6 @@ from .controller import SENSES
 from .model import State, World, anchors, grown_nodes, present_edges
 from .nodes import others
 from .stepping import windows
-
-Nodes = Float[Array, "node"]
 
 ASIDE = 2.0
 """Distance from a node, in cells, at which it senses the energy beside the body."""
@@ -43,9 +41,12 @@ def sensed(
     - `energy_along`: how much more there is at the first node that has grown than at the last;
     - `flow_along` and `flow_across`: speed of the water towards the last node and to the left,
       less that of the body's nodes together, 1 at 0.05 cells a step;
-    - `touch`: the density of other bodies, in nodes a cell;
-    - `account`: what the creature has.
+    - `touch`: the density of other bodies, in nodes a cell; 0 in a world without `contact`;
+    - `account`: quanta of the creature, 1 with `Food.full` of them.
+
+    Raises `ValueError` for senses that are unknown, out of order, or for what the world lacks.
     """
+    _check(state, senses, stock)
     if stock is not None:
         state = replace(state, energy=stock.energy)
     rows = []
@@ -76,8 +77,22 @@ def sensed(
     if "account" in senses:
         assert stock is not None
         rows.append(world.groups.per_node(stock.account))
-    assert len(rows) == len(senses) == len(set(senses) & set(SENSES))
-    return jnp.stack(rows) if rows else jnp.zeros((0, len(state.positions)))
+    return jnp.stack(rows) if rows else jnp.zeros((0, len(state.positions)), state.angles.dtype)
+
+
+def _check(state: State, senses: tuple[str, ...], stock: Stock | None) -> None:
+    if senses != tuple(one for one in SENSES if one in senses):
+        raise ValueError(
+            f"`senses` must be of {', '.join(SENSES)}, in this order, got {senses}."
+        )
+    if stock is None and "account" in senses:
+        raise ValueError("`senses` must not have account in a world without food.")
+    if stock is None and state.energy is None:
+        for one in senses:
+            if one.startswith("energy"):
+                raise ValueError(
+                    f"`senses` must not have {one} in a world without energy and food."
+                )
 
 
 def _water(world: World, state: State) -> Float[Array, "node 2"]:

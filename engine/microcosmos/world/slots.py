@@ -1,8 +1,7 @@
 """Slots: places for creatures of different bodies and networks in one world.
 
-What a slot holds and its state are arrays with the slot as first axis, so a creature is born,
-or dies, by other numbers in the same arrays: nothing is compiled anew, and the arrays are the
-checkpoint.
+The contents of slots and their state are arrays with the slot as first axis. A birth or a death
+puts other numbers into the same arrays and compiles nothing, and the arrays are a checkpoint.
 """
 
 from dataclasses import replace
@@ -20,7 +19,7 @@ from .model import State, World, grown_rods, present_edges
 from .stepping import Pushed
 
 
-class Means(eqx.Module):
+class Actuation(eqx.Module):
     """Scales, clock and actuators of one creature. A bound of infinity is none."""
 
     angle_scale: Float[Array, "*slot"]
@@ -42,7 +41,7 @@ class Means(eqx.Module):
 
 
 class Occupant(eqx.Module):
-    """What a slot holds: a body alone, the network at its nodes, and its means.
+    """The contents of a slot: a body alone, the network at its nodes, and its actuation.
 
     In a world with slots all arrays have the slot as first axis. Colours of swept bodies are
     those of the world, whose bodies then are all equal.
@@ -53,12 +52,12 @@ class Occupant(eqx.Module):
     layout: filaments.Layout
     rest_length: Float[Array, "edge"]
     network: Network
-    """Its timer is that of the means."""
-    means: Means
+    """Its timer is that of the actuation."""
+    actuation: Actuation
 
 
 class Slots(eqx.Module):
-    """What all slots hold."""
+    """The contents of all slots."""
 
     occupants: Occupant
     filled: Bool[Array, "slot"]
@@ -236,6 +235,39 @@ def empty(place: World, start: State, one: Occupant, count: int) -> tuple[Slots,
     return slots, living
 
 
+def _check_size(occupants: Occupant, one: Occupant) -> None:
+    if jax.tree.structure(occupants) != jax.tree.structure(one):
+        raise ValueError(
+            "a creature must have the senses, and the parts of body and network, of its slot."
+        )
+    ways = jax.tree_util.tree_flatten_with_path(occupants)[0]
+    for (way, there), new in zip(ways, jax.tree.leaves(one), strict=True):
+        if there.shape[1:] != jnp.shape(new):
+            name = jax.tree_util.keystr(way, simple=True, separator=".")
+            raise ValueError(
+                f"`{name}` must have the shape {there.shape[1:]} of a slot, "
+                f"got {jnp.shape(new)}."
+            )
+
+
+def check_window(place: World, living: Living, steps: int, every: int) -> None:
+    """Raise `ValueError` where a window cannot be simulated, see `genomes.living.live`."""
+    for name, value in (("steps", steps), ("every", every)):
+        if value < 1:
+            raise ValueError(f"`{name}` must be at least 1, got {value}.")
+    if place.food is None:
+        return
+    if living.food is None or living.account is None or living.time is None:
+        raise ValueError("`living` must have food, accounts and a time in a world with food.")
+    # Each row of cells may grow wholly each time: see `fields.food.Rows`.
+    times = steps // place.food.every + 1
+    if times * place.size[1] * fields.food.MOST >= 2**43:
+        raise ValueError(
+            f"`steps` must be fewer in a window: the sum of {times} changes of food in "
+            f"{place.size[1]} cells could be too large, got {steps}."
+        )
+
+
 def _fed(food: fields.Food, count: int) -> dict[str, Array]:
     nothing = jnp.zeros((), jnp.int32)
     return {
@@ -256,9 +288,13 @@ def born(
 ) -> tuple[Slots, Living]:
     """Return a world in which a slot holds a newborn at `positions`, in cells.
 
-    It is at rest in the shape in which it stands. Quanta of its `account` have to come from
-    elsewhere.
+    `slot` must be one of the slots: JAX drops what is written elsewhere. Whoever lives there is
+    lost, with its account. No other creature may have the `number`. The newborn is at rest in
+    the shape in which it stands; the quanta of its `account` have to come from elsewhere.
+
+    Raises `ValueError` for a creature of another size or form than those of the slots.
     """
+    _check_size(slots.occupants, one)
     angles = filaments.edge_angles(positions, one.rods)
     rest = filaments.standing(positions, angles, one.rods, one.layout)
 
@@ -287,7 +323,7 @@ def born(
 
 
 def removed(slots: Slots, slot: Int[Array, ""] | int) -> Slots:
-    """Return slots of which one is empty."""
+    """Return slots of which one is empty. Its account stays in the state, for its heirs."""
     return replace(slots, filled=slots.filled.at[slot].set(False))
 
 
@@ -300,8 +336,8 @@ def intake(before: Living, after: Living) -> Array | None:
     return None
 
 
-class Step(eqx.Module):
-    """What `Tally` adds up of a step, by slot."""
+class StepTally(eqx.Module):
+    """The measures of a step that `Tally` adds up."""
 
     centre: Float[Array, "slot 2"]
     boxes: Float[Array, "slot 2"]
@@ -314,7 +350,7 @@ class Step(eqx.Module):
     mach: Float[Array, "slot"]
 
 
-def by_slot(world: World, end: State, _: filaments.Rest, pushed: Pushed) -> Step:
+def by_slot(world: World, end: State, _: filaments.Rest, pushed: Pushed) -> StepTally:
     """Return the measures of a step by slot, for `step`."""
     groups, layers = world.groups, world.form.layers
     assert world.present is not None
@@ -323,14 +359,14 @@ def by_slot(world: World, end: State, _: filaments.Rest, pushed: Pushed) -> Step
     here = jnp.repeat(world.present, layers)
     drift = pushed.repelled.drift
     speed = jnp.where(here, jnp.sum(pushed.velocity * pushed.velocity, 1), 0.0)
-    return Step(
+    return StepTally(
         *place_of(world, end),
         work=points.total(jnp.sum(pushed.forcing * pushed.target, 1)),
-        contact=groups.mean(jnp.sqrt(jnp.sum(drift * drift, 1)), weights),
+        contact=groups.mean(jnp.sqrt(jnp.sum(drift * drift, 1) + 1e-24), weights),
         touched=_steps(pushed.repelled.touched, groups, weights),
         capped=_steps(pushed.repelled.limited, groups, weights),
         limited=groups.mean(pushed.held, weights),
-        mach=mach(jnp.sqrt(jnp.maximum(points.largest(speed), 0.0))),
+        mach=mach(jnp.sqrt(jnp.maximum(points.largest(speed), 0.0) + 1e-24)),
     )
 
 

@@ -59,3 +59,4 @@ def test_any_body_that_the_boundary_accepts_stays_within_its_arrays():
     worlds, crowds = done.stdout.splitlines() or ("", "")
     assert worlds.startswith("300 worlds, "), done.stdout + done.stderr[-3000:]
     assert crowds.startswith("300 crowds, "), done.stdout + done.stderr[-3000:]
+    assert int(crowds.split()[2]) > 500  # Creatures: few crowds are refused.

@@ -1,7 +1,7 @@
 """Worlds with slots: the kernel against JAX, what changes no bit, and what is conserved."""
 
 from dataclasses import replace
-from functools import reduce
+from functools import partial, reduce
 
 import equinox as eqx
 import jax
@@ -13,6 +13,7 @@ from crowds import (
     PERIOD,
     SLOTS,
     birth,
+    contact,
     crowd,
     food,
     grown,
@@ -24,10 +25,11 @@ from crowds import (
     same,
     task_of,
 )
-from kernel_scenes import heap, meeting, single
+from kernel_scenes import chain, heap, meeting, single
+from kernel_scenes import in_jax as in_steps
 
-from microcosmos import coupling, fields, fluid, world
-from microcosmos.genomes.living import newborn
+from microcosmos import bodies, coupling, fields, fluid, world
+from microcosmos.genomes.living import live, newborn
 from microcosmos.world import nodes, slots
 
 kernels = pytest.importorskip(
@@ -50,34 +52,93 @@ def apart(one, other, size):
     return np.abs(away - size * np.round(away / size)).max()
 
 
+def agree(of_kernel, of_jax, share):
+    """Compare measures, to a share of the largest of each; floors flip single quanta."""
+    for name in ("displacement", "path", "turned", "work", "contact", "limited", "mach"):
+        expected = np.asarray(getattr(of_jax, name))
+        most = np.abs(expected).max()
+        assert most > 0 or name in ("contact", "limited"), name
+        np.testing.assert_allclose(
+            getattr(of_kernel, name), expected, rtol=0, atol=share * most + 2e-5, err_msg=name
+        )
+    np.testing.assert_array_equal(of_kernel.touched, of_jax.touched)
+    np.testing.assert_allclose(of_kernel.capped, of_jax.capped, atol=1)
+    for name in ("intake", "grown", "lost"):
+        expected = np.asarray(getattr(of_jax, name), float)
+        if expected.shape[1:]:
+            expected, found = (
+                4096.0 * np.asarray(one)[:, 0] + np.asarray(one)[:, 1]
+                for one in (getattr(of_jax, name), getattr(of_kernel, name))
+            )
+        else:
+            found = np.asarray(getattr(of_kernel, name), float)
+        assert expected.max() > 0, name
+        np.testing.assert_allclose(found, expected, rtol=share, atol=500, err_msg=name)
+
+
 @kinds()
 def test_the_kernel_lives_as_jax(name):
-    """Floors flip quanta and contact grows differences, so bounds grow with the steps."""
+    """Contact and senses make differences grow, so bounds grow with the steps."""
     place, held, living = crowd(name, count=6)
     found = expected = living
-    for steps, near in ((10, 5e-5), (10, 2e-4), *((20, 2e-3),) * 4):
+    for near in (5e-5, 2e-4, 2e-3):
         expected, of_jax = in_jax(place, held, expected, 10, EVERY)
         found, of_kernel = in_kernel(place, held, found, 10, EVERY)
-        assert apart(found.positions, expected.positions, 48) < near, steps
+        assert apart(found.positions, expected.positions, 48) < near
         assert np.abs(found.angles - expected.angles).max() < 10 * near
         for plane, other in zip(found.populations, expected.populations, strict=True):
-            np.testing.assert_allclose(plane, other, atol=10 * near)
+            np.testing.assert_allclose(plane, other, atol=near)
         for shape in ("command", "paced", "rest"):
             one, other = getattr(found, shape), getattr(expected, shape)
-            np.testing.assert_allclose(one.angle, other.angle, atol=300 * near)
-            np.testing.assert_allclose(one.length, other.length, atol=300 * near)
+            np.testing.assert_allclose(one.angle, other.angle, atol=100 * near)
+            np.testing.assert_allclose(one.length, other.length, atol=100 * near)
         np.testing.assert_array_equal(found.age, expected.age)
-        assert np.abs(found.food - expected.food).max() < 2000 * (1 + 100 * near)
-        np.testing.assert_allclose(found.account, expected.account, atol=3e5 * near)
-        for measure, value in vars(of_jax).items():
-            if measure in ("intake", "grown", "lost", "touched", "capped"):
-                continue
-            np.testing.assert_allclose(getattr(of_kernel, measure), value, atol=20 * near)
-        np.testing.assert_array_equal(of_kernel.touched, of_jax.touched)
-        if near > 1e-3:
-            break
+        away = np.abs(np.asarray(found.food - expected.food))
+        assert np.percentile(away, 99) <= 10, np.percentile(away, [50, 99, 100])
+        agree(of_kernel, of_jax, 20 * near)
     assert np.abs(found.positions - living.positions).max() > 0.01
-    assert np.max(of_kernel.intake) > 0
+
+
+@pytest.mark.parametrize("two", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_creatures_sense_and_take_the_energy_of_the_paper(two):
+    senses = ("energy", "energy_across", "energy_along")
+    place, held, living = crowd(count=4, senses=senses, fed=False)
+    packets = fields.packets((48, 48), fields.Packets(5, 4.0, 1.0, 0))
+    energy = fields.Energy(single(packets), single(0.05), single(0.1))
+    form = replace(place.form, layers=2) if two else place.form
+    place = replace(place, energy=energy, form=form)
+    living = replace(living, energy=energy.start, collected=jnp.zeros((SLOTS, 12)))
+    end, of_jax = in_jax(place, held, living, 20, EVERY)
+    found, of_kernel = in_kernel(place, held, living, 20, EVERY)
+    assert apart(found.positions, end.positions, 48) < 2e-4
+    np.testing.assert_allclose(found.energy, end.energy, atol=1e-4)
+    np.testing.assert_allclose(found.collected, end.collected, atol=1e-4)
+    np.testing.assert_allclose(of_kernel.intake, of_jax.intake, atol=1e-3)
+    assert np.max(of_jax.intake) > 0.1
+    assert np.abs(end.command.angle - living.command.angle).max() > 0.01
+
+
+@pytest.mark.parametrize("every", [1, 5, 20])
+def test_food_changes_in_the_kernel_as_in_jax(every):
+    """Nobody lives: a uniform force drives the water past walls."""
+    place, held, living = crowd(count=1)
+    solid = jnp.zeros((48, 48), bool).at[10, 5:30].set(True).at[30].set(True)
+    around = fluid.Surroundings(force=single([2e-4, -1e-4]), solid=solid)
+    given = replace(food(), every=every)
+    place = replace(place, surroundings=around, food=given)
+    random = np.random.default_rng(0)
+    cells = np.where(solid, 0, random.integers(0, 2**18, (48, 48)))
+    nobody = replace(held, filled=jnp.zeros_like(held.filled))
+    living = replace(living, food=jnp.asarray(cells, jnp.int32))
+    end, of_jax = in_jax(place, nobody, living, 40)
+    found, of_kernel = in_kernel(place, nobody, living, 40)
+    assert np.abs(end.food - living.food).max() > 1000
+    # Velocities differ in their last digits, so a floor may give one quantum more.
+    assert np.abs(found.food - end.food).max() <= 20
+    assert np.mean(found.food != end.food) < 0.2
+    assert not np.any(found.food[30] > np.asarray(given.capacity)[30])
+    for one, other in ((of_kernel.grown, of_jax.grown), (of_kernel.lost, of_jax.lost)):
+        assert abs(fields.food.total(one) - fields.food.total(other)) < 2000
 
 
 @kinds(("chains", "bodies from plans"))
@@ -247,11 +308,33 @@ def test_contact_moves_no_cluster_as_a_whole(strength):
     drift = np.asarray(found.drift)
     assert np.abs(drift).max() > 1e-3
     np.testing.assert_allclose(drift.sum(0), 0, atol=1e-6)
-    assert bool(found.touched.all())
-    assert bool(found.limited.all()) == (strength > 4)
-    limit = 0.1
-    middle = np.asarray(box.groups.per_node(box.groups.mean(start.positions, jnp.ones(22))))
-    assert np.abs(drift).max() <= 2 * limit + 1e-6, middle
+    assert found.touched.all()
+    assert found.limited.all() == found.limited.any() == (strength > 4)
+    # The centre and the farthest node by rotation move by the limit at most.
+    assert np.abs(drift).max() <= 2 * 0.1 + 1e-6
+
+
+def test_one_factor_holds_for_all_that_touch_each_other():
+    """Of three filaments side by side the first two are close; two others touch far away."""
+    rows = ((10.0, 10.0), (11.0, 10.0), (15.5, 10.0), (34.0, 30.0), (38.5, 30.0))
+    body = bodies.combined([bodies.placed(chain(11), at, np.pi / 2) for at in rows])
+    box, start, rest = meeting(body, matched=True, strength=20.0)
+    given = nodes.repel(box, start.positions)
+    assert given.touched.all()
+    np.testing.assert_array_equal(given.limited, [True, True, True, False, False])
+    drift = np.asarray(given.drift).reshape(5, 11, 2)
+    np.testing.assert_allclose(drift[:3].sum((0, 1)), 0, atol=1e-5)
+    alone = replace(box, contact=contact(20.0, 1e9))
+    free = np.asarray(nodes.repel(alone, start.positions).drift).reshape(5, 11, 2)
+    factor = np.linalg.norm(drift[:3], axis=2).sum() / np.linalg.norm(free[:3], axis=2).sum()
+    assert factor < 0.9
+    np.testing.assert_allclose(drift[:3], factor * free[:3], atol=1e-5)
+    np.testing.assert_array_equal(drift[3:], free[3:])
+    one = jax.tree.map(lambda x: np.asarray(x)[:1], rest)
+    end, _ = jax.jit(in_steps)(box, start, one)
+    for threads in (1, 2):
+        found, _ = jax.jit(partial(world.native.rollout, threads=threads))(box, start, one)
+        np.testing.assert_allclose(found.positions, end.positions, atol=2e-5)
 
 
 def test_an_eater_gets_its_part_rounded_down_and_the_rest_stays():
@@ -352,9 +435,9 @@ def changed(tree, path, value):
         ("slots.occupants.network.target", -1, "refers to what it lacks"),
         ("slots.occupants.network.joint_node", 12, "refers to what it lacks"),
         ("slots.occupants.network.activation", 9, "refers to what it lacks"),
-        ("slots.occupants.means.period", 0.0, "a clock or a bound is out of range"),
-        ("slots.occupants.means.max_speed", 0.0, "a clock or a bound is out of range"),
-        ("slots.occupants.means.max_bend", np.nan, "a clock or a bound is out of range"),
+        ("slots.occupants.actuation.period", 0.0, "a clock or a bound is out of range"),
+        ("slots.occupants.actuation.max_speed", 0.0, "a clock or a bound is out of range"),
+        ("slots.occupants.actuation.max_bend", np.nan, "a clock or a bound is out of range"),
         ("slots.number", 1, "two creatures have one number"),
         ("living.age", -1, "an age is negative"),
         ("living.account", -1, "food, an account, a time or a share is out of range"),
@@ -371,6 +454,63 @@ def test_slots_that_cannot_live_are_refused(path, value, reason):
     given[name] = changed(given[name], rest, value)
     with pytest.raises(Exception, match=f"microcosmos-kernels: .*{reason}"):
         jax.block_until_ready(in_kernel(given["place"], given["slots"], given["living"], 2))
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"every": 0}, "`every` must be at least 1"),
+        ({"steps": 0}, "`steps` must be at least 1"),
+        ({"steps": 10**8}, "`steps` must be fewer"),
+        ({"living": {"food": None}}, "`living` must have food"),
+    ],
+)
+@pytest.mark.parametrize("simulate", [live, world.native.live])
+def test_windows_that_no_world_can_live_are_refused(simulate, change, named):
+    place, held, living = crowd(count=2)
+    living = replace(living, **change.get("living", {}))
+    with pytest.raises(ValueError, match=named):
+        simulate(place, held, living, change.get("steps", 3), change.get("every", 1))
+
+
+def test_a_creature_of_another_size_or_form_is_refused():
+    _, held, living = crowd(count=2)
+    (one, positions), *_ = newborns("rings", 48, world.SENSES, 1, 0)
+    with pytest.raises(ValueError, match=r"`rods\.edges` must have the shape"):
+        slots.born(held, living, 0, one, positions, 9)
+    (one, positions), *_ = newborns("chains", 48, (), 1, 0)
+    with pytest.raises(ValueError, match="must have the senses"):
+        slots.born(held, living, 0, one, positions, 9)
+
+
+@pytest.mark.parametrize(
+    ("senses", "named"),
+    [
+        (("touch", "energy"), "in this order"),
+        (("smell",), "must be of energy"),
+        (("account",), "must not have account"),
+        (("energy_along",), "must not have energy_along"),
+    ],
+)
+def test_senses_for_what_is_not_there_are_refused(senses, named):
+    box, start, _ = meeting(heap(), matched=True)
+    with pytest.raises(ValueError, match=named):
+        world.senses.sensed(box, start, senses)
+
+
+def test_food_must_suit_its_world():
+    box, _, _ = meeting(heap(), matched=True)
+    with pytest.raises(ValueError, match=r"`food.capacity` must have the shape \(48, 48\)"):
+        replace(box, food=food(32))
+    energy = fields.Energy(jnp.zeros((48, 48)), None, None)
+    with pytest.raises(ValueError, match="`energy` or `food`"):
+        replace(box, food=food(), energy=energy)
+    with pytest.raises(ValueError, match="without a fluid"):
+        replace(box, food=food(), form=replace(box.form, fluid=False))
+    with pytest.raises(ValueError, match="`every` must be at least 1"):
+        food(every=0)
+    with pytest.raises(ValueError, match="must be in whole quanta"):
+        eqx.tree_at(lambda one: one.capacity, food(), jnp.zeros((48, 48))).__check_init__()
 
 
 def test_creatures_that_no_slot_holds_are_refused():
