@@ -16,6 +16,7 @@ from crowds import (
     grown,
     in_jax,
     in_kernel,
+    momentum,
     newborns,
     quanta,
     same,
@@ -31,8 +32,8 @@ make some crowds grow every difference."""
 
 
 def crowds() -> bool:
-    """Compare the kernel with JAX, then balance the quanta of a long life."""
-    return all([_compared(), _balanced()])
+    """Compare the kernel with JAX, balance the quanta of a long life, and weigh the water."""
+    return all([_compared(), _balanced(), _still()])
 
 
 def _compared() -> bool:
@@ -86,3 +87,20 @@ def _balanced() -> bool:
         f"{begun:,} quanta at the start, {before:,} at the end"
     )
     return lost == 0 and same(again, alone)
+
+
+def _still() -> bool:
+    """Tell whether the water gains no momentum beside what bodies exert on it.
+
+    The sum of forces is at least the work over the largest speed.
+    """
+    place, held, living = crowd(count=6, seed=4)
+    work, fastest = 0.0, 0.0
+    for _ in range(100):
+        living, tally = in_kernel(place, held, living, 1000, 3)
+        work += float(np.sum(tally.work))
+        fastest = max(fastest, float(np.max(tally.mach)) / np.sqrt(3))
+    drift = float(np.abs(momentum(living).sum((0, 1))).max())
+    share = drift * fastest / work
+    rich.print(f"100,000 steps: the water's momentum is {share:.1e} of all forces")
+    return share < 1e-6

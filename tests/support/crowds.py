@@ -188,3 +188,12 @@ def quanta(held, living):
 def grown(tally):
     """Return the quanta that have grown in a window, less those that are lost."""
     return fields.food.total(tally.grown) - fields.food.total(tally.lost)
+
+
+WAYS = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)])
+
+
+def momentum(living):
+    """Return the momentum (x, y, 2) of the fluid in each cell, in double precision."""
+    planes = [np.asarray(plane, float) for plane in living.populations]
+    return np.einsum("pxy,pa->xya", planes, WAYS)

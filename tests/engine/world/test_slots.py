@@ -19,6 +19,7 @@ from crowds import (
     grown,
     in_jax,
     in_kernel,
+    momentum,
     newborns,
     quanta,
     reordered,
@@ -245,6 +246,16 @@ def test_copies_in_a_larger_box_do_the_same():
         places = found.positions[at] + 96 * found.boxes[at][:, None]
         expected = end.positions + 48 * end.boxes[:, None] + np.float32(shift[at])[:, None]
         np.testing.assert_allclose(places, expected, atol=1e-4)
+
+
+@kinds(("chains",))
+def test_creatures_push_the_water_nowhere(name):
+    place, held, living = crowd(name, count=6, seed=4)
+    end, tally = in_kernel(place, held, living, 400, EVERY)
+    moving = momentum(end)
+    assert np.abs(moving).sum() > 0.1
+    assert np.all(np.asarray(tally.path)[np.asarray(held.filled)] > 0)
+    np.testing.assert_allclose(moving.sum((0, 1)), 0, atol=2e-6 * np.abs(moving).sum())
 
 
 def test_who_is_far_away_changes_no_bit():

@@ -32,7 +32,9 @@ def uncovered(world: World, state: State) -> str | None:
         "soft joints": layout is not None and layout.bend is not None,
         "layers": world.form.layers > 1,
         "forcing of another projection": world.form.projection not in PROJECTIONS,
-        "repulsion": world.steric is not None or world.barrier is not None,
+        "repulsion": any(
+            one is not None for one in (world.steric, world.contact, world.barrier)
+        ),
         "energy": state.energy is not None,
         "surroundings": any(one is not None for one in vars(around).values()),
         "so many nodes": len(state.positions) > MOST_NODES,
