@@ -18,7 +18,8 @@ LIBRARIES = {"x86_64": {"basic", "avx2", "avx512"}, "aarch64": {"basic"}}
 MACHINES = {"x86_64": "Advanced Micro Devices X86-64", "aarch64": "AArch64"}
 FROM_THE_C_LIBRARY = re.compile(r"(libc|libm|libdl|libpthread|ld-linux-[\w-]+)\.so\.\d")
 EXPORTED = {
-    f"microcosmos_{name}" for name in ("rollout", "develop", "summarise", "instruction_set")
+    f"microcosmos_{name}"
+    for name in ("rollout", "live", "develop", "summarise", "instruction_set")
 }
 FLAGS = {"avx2": {"avx2"}, "avx512": {"avx512f", "avx512vl", "avx512dq", "avx512bw"}}
 """What Linux calls the instructions that a library needs."""
