@@ -11,19 +11,13 @@ import rich
 from crowds import (
     BODIES,
     SLOTS,
-    birth,
     crowd,
-    grown,
     in_jax,
     in_kernel,
+    ledger,
     momentum,
-    newborns,
-    quanta,
     same,
 )
-
-from microcosmos import world
-from microcosmos.world import slots
 
 CROWDS, WINDOWS, STEPS = 200, 100_000, 5
 MEDIAN, MOST = 2e-4, 5e-2
@@ -59,34 +53,15 @@ def _compared() -> bool:
 
 
 def _balanced() -> bool:
-    place, held, living = crowd(count=4)
-    random, number = np.random.default_rng(0), 4
-    many = newborns("chains", 48, world.SENSES, 6, 0)
-    begun = before = quanta(held, living)
-    lost = 0
-    for window in range(WINDOWS):
-        living, tally = in_kernel(place, held, living, STEPS)
-        before += grown(tally)
-        lost += quanta(held, living) != before
-        if window % 20:
-            continue
-        slot = int(random.integers(SLOTS))
-        if held.filled[slot]:
-            before -= int(living.account[slot])
-            held = slots.removed(held, slot)
-        else:
-            one, positions = many[int(random.integers(6))]
-            at = np.float32(np.asarray(positions) + random.uniform(0, 48, 2))
-            account = int(random.integers(2**20))
-            held, living = birth(held, living, slot, one, at, number, account)
-            before, number = before + account, number + 1
-    again, _ = in_kernel(place, held, living, STEPS, threads=2)
-    alone, _ = in_kernel(place, held, living, STEPS)
+    found, there, born = [], [], 0
+    for balanced, last in ledger(in_kernel, WINDOWS, change=20):
+        found.append(balanced)
+        *there, born = last
+    again, alone = (in_kernel(*there, STEPS, threads=threads)[0] for threads in (2, 1))
     rich.print(
-        f"{WINDOWS:,} windows, {number} births: the ledger differed in {lost}; "
-        f"{begun:,} quanta at the start, {before:,} at the end"
+        f"{WINDOWS:,} windows, {born} births: the ledger differed in {found.count(False)}"
     )
-    return lost == 0 and same(again, alone)
+    return all(found) and same(again, alone)
 
 
 def _still() -> bool:

@@ -197,3 +197,29 @@ def momentum(living):
     """Return the momentum (x, y, 2) of the fluid in each cell, in double precision."""
     planes = [np.asarray(plane, float) for plane in living.populations]
     return np.einsum("pxy,pa->xya", planes, WAYS)
+
+
+def ledger(simulate, windows, change=1):
+    """Live in windows of five steps, with a birth or a death after every `change` of them.
+
+    Yields whether all quanta of a window are where they should be, and the world after it.
+    """
+    place, held, living = crowd(count=4)
+    random, before, number = np.random.default_rng(0), quanta(held, living), 4
+    many = newborns("chains", 48, world.SENSES, 6, 0)
+    for window in range(windows):
+        living, tally = simulate(place, held, living, 5)
+        before += grown(tally)
+        yield quanta(held, living) == before, (place, held, living, number)
+        if window % change:
+            continue
+        slot = int(random.integers(SLOTS))
+        if held.filled[slot]:
+            before -= int(living.account[slot])
+            held = slots.removed(held, slot)
+        else:
+            one, positions = many[int(random.integers(6))]
+            at = np.float32(np.asarray(positions) + random.uniform(0, 48, 2))
+            account = int(random.integers(2**20))
+            held, living = birth(held, living, slot, one, at, number, account)
+            before, number = before + account, number + 1
