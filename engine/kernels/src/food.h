@@ -1,5 +1,5 @@
-// Energy in whole numbers, as in `fields.food`: creatures eat quanta from their cells, and the rest
-// regrows, decays, spreads and drifts. Every quantum is counted, in any order.
+// Energy in whole numbers, as in `fields.food`: creatures eat quanta from their cells; the rest
+// drifts, spreads, decays and regrows. Sums of quanta are exact, in any order.
 #pragma once
 #include "density.h"
 #include "points.h"
@@ -51,7 +51,7 @@ class Food {
 
   // Eat at the nodes of the bodies of a share, where they stand; `accounts` are by body.
   void eat(const Bodies& b, const Nodes& n, const Lattice& l, int32_t* accounts, const Member& me) {
-    // The cell at a node: the nearest.
+    // A node eats from its nearest cell.
     first_cells(me.share.nodes, n.x, share_, cell_x_, l.height, -0.5f);
     first_cells(me.share.nodes, n.y, share_, cell_y_, l.width, -0.5f);
     each_eater(b, accounts, me, [&](int, int slot) {
@@ -62,7 +62,7 @@ class Food {
         __atomic_fetch_add(&count, 1, __ATOMIC_RELAXED);
     });
     me.wait();  // Eaters of all members are counted.
-    // What each body ate: its account decides who eats, until all have.
+    // Accounts change at the end: until then they decide who eats.
     for (int body = me.share.bodies.from; body < me.share.bodies.to; body++) ate_[body] = 0;
     each_eater(b, accounts, me, [&](int body, int slot) {
       const int at = here(l, slot);

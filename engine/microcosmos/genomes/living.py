@@ -44,7 +44,7 @@ from .encoding import Drive, shifted
 def newborn(
     driven: Drive, actuators: Actuators | None, period: float, ramp: float
 ) -> tuple[Occupant, Float[Array, "node 2"]]:
-    """Return what a slot holds of a creature alone, and the positions of its nodes about their
+    """Return the contents of a slot for a creature alone, and the positions of its nodes about their
     mean, in cells; `period` and `ramp` are in steps.
 
     Raises `ValueError` for a creature without a network, whose timer is not periodic, or
@@ -138,7 +138,7 @@ def _stock(place: World, living: Living) -> Stock | None:
 
 
 def _fed(box: World, flat: State, living: Living) -> tuple[Living, Any]:
-    """Return what lives after creatures have eaten where they stood before the step, and food
+    """Return the state after creatures have eaten where they stood before the step, and food
     has changed; with the quanta that have grown and that are lost."""
     given, food, account, time = box.food, living.food, living.account, living.time
     if given is None or food is None or account is None or time is None:
@@ -158,7 +158,7 @@ def _fed(box: World, flat: State, living: Living) -> tuple[Living, Any]:
 def _act(
     occupants: Occupant, living: Living, rows: Float[Array, "sense slot node"], every: int
 ) -> Living:
-    """Return what lives with the rest shapes of a step."""
+    """Return the state with the rest shapes of a step."""
 
     def one(
         occupant: Occupant, memory: tuple[Rest, Rest, Rest], values: Any, age: Any, rows: Any

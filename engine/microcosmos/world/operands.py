@@ -96,7 +96,7 @@ def rations_of(place: World) -> tuple[list[Array], Numbers]:
 
 
 def living_of(living: Living, arrays: Sequence[Array]) -> Living:
-    """Return what lives from its arrays in the kernel's order."""
+    """Return the state of slots from its arrays in the kernel's order."""
     positions, angles, boxes, age, angle, length, values, energy, collected = arrays[9:18]
     food, account, time = arrays[18:]
     return Living(
@@ -116,7 +116,7 @@ def living_of(living: Living, arrays: Sequence[Array]) -> Living:
 
 
 def slots_of(place: World, slots: Slots) -> tuple[list[Array], Numbers]:
-    """Return what slots hold, in the kernel's order, and its numbers."""
+    """Return the contents of slots in the kernel's order, and its numbers."""
     one, network, layout = slots.occupants, slots.occupants.network, slots.occupants.layout
     rods, matched = one.rods, place.layout is not None
     count, nodes = one.present.shape

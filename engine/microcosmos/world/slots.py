@@ -188,7 +188,7 @@ def flat_state(living: Living) -> State:
 
 
 def with_state(living: Living, state: State) -> Living:
-    """Return what lives with its bodies, the fluid and the energy of a state."""
+    """Return the state of slots with the bodies, the fluid and the energy of `state`."""
     collected = living.collected
     return replace(
         living,
