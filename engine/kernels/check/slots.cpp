@@ -255,7 +255,8 @@ class Crowd : Made {
   // The bytes of the measures, of slots in the order of their creatures.
   std::string measures() const {
     std::string found;
-    add(found, w_.r.grown, w_.r.fed * 2 * w_.r.height), add(found, w_.r.lost, w_.r.fed * 2 * w_.r.height);
+    add(found, w_.r.grown, w_.r.fed * 2 * w_.r.height),
+        add(found, w_.r.lost, w_.r.fed * 2 * w_.r.height);
     for (int s : living(w_)) add(found, w_.tally + s * TALLY_COUNT, TALLY_COUNT);
     return found;
   }

@@ -340,10 +340,11 @@ inline bool sound_food(const Slots& w) {
   // What a row of cells gains in a window has to fit into `Rollout::grown`.
   const int64_t times = r.steps / r.food_every + 1;
   if (times * r.width >= int64_t(1) << 19) return false;
-  return between(given[BITE], 0, most) && given[BITE] * float(r.nodes) <= 1073741824.0f && between(given[REGROWTH], 0, 1) &&
-         between(given[DECAY], 0, 1) && between(given[FOOD_DIFFUSION], 0, 0.25f) &&
-         given[UNIT] > 0 && given[FULL] > 0 && within(r.capacity, cells, 0, (1 << 24) + 1) &&
-         within(r.food, cells, 0, 1 << 30) && within(w.account, w.slots, 0, int64_t(1) << 31) &&
+  return between(given[BITE], 0, most) && given[BITE] * float(r.nodes) <= 1073741824.0f &&
+         between(given[REGROWTH], 0, 1) && between(given[DECAY], 0, 1) &&
+         between(given[FOOD_DIFFUSION], 0, 0.25f) && given[UNIT] > 0 && given[FULL] > 0 &&
+         within(r.capacity, cells, 0, (1 << 24) + 1) && within(r.food, cells, 0, 1 << 30) &&
+         within(w.account, w.slots, 0, int64_t(1) << 31) &&
          within(r.time, 1, 0, INT32_MAX - int64_t(r.steps));
 }
 
@@ -386,7 +387,8 @@ inline std::string refused(const Slots& w) {
     const std::vector<int32_t> member(N, 0);
     r.member = member.data();
     if (!sound(r)) return LACKS;
-    if (!sound_actuation(w.actuation + s * ACTUATION_COUNT)) return "a clock or a bound is out of range";
+    if (!sound_actuation(w.actuation + s * ACTUATION_COUNT))
+      return "a clock or a bound is out of range";
     if (!std::count(r.present, r.present + N, 1)) return "nothing of a creature has grown";
     // A joint that has grown turns by the output at a node that has.
     auto grown = [&](int32_t edge) {

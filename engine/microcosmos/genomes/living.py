@@ -44,8 +44,8 @@ from .encoding import Drive, shifted
 def newborn(
     driven: Drive, actuators: Actuators | None, period: float, ramp: float
 ) -> tuple[Occupant, Float[Array, "node 2"]]:
-    """Return the contents of a slot for a creature alone, and the positions of its nodes about their
-    mean, in cells; `period` and `ramp` are in steps.
+    """Return the contents of a slot for a creature alone, and the positions of its nodes about
+    their mean, in cells; `period` and `ramp` are in steps.
 
     Raises `ValueError` for a creature without a network, whose timer is not periodic, or
     without a layout.
